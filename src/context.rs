@@ -1,0 +1,91 @@
+//! What every long call receives: threads, progress, cancellation.
+//!
+//! The library keeps no globals. A caller that wants a progress bar, a stop
+//! button or a thread limit passes a [`Context`]; [`Context::default`] asks
+//! for nothing.
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+
+/// A stage of the pipeline, in the order of the paper's section 5.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// Rounding to the lattice, merging duplicates.
+    Samples,
+    /// Delaunay triangulation of the samples and the frame.
+    Delaunay,
+    /// Poles and polar balls.
+    Poles,
+    /// Regular triangulation of the polar balls.
+    Power,
+    /// Inner and outer labels.
+    Labels,
+    /// Faces between inner and outer cells.
+    Crust,
+}
+
+impl Stage {
+    /// A short name for people: `delaunay`, `poles`, ...
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Samples => "samples",
+            Stage::Delaunay => "delaunay",
+            Stage::Poles => "poles",
+            Stage::Power => "power",
+            Stage::Labels => "labels",
+            Stage::Crust => "crust",
+        }
+    }
+}
+
+/// Receives progress and may stop the work.
+pub trait Progress: Sync {
+    /// Called now and then (every few thousand items) from a working thread.
+    /// `ControlFlow::Break` cancels: the running stage returns
+    /// [`Cancelled`] soon after.
+    fn advance(&self, stage: Stage, done: u64, total: u64) -> ControlFlow<()>;
+}
+
+/// Ignores progress and never cancels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn advance(&self, _: Stage, _: u64, _: u64) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// The caller's progress handler asked to stop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+/// Threads, progress and cancellation for one call.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// Threads to use; `None` takes all the machine offers. The result does
+    /// not depend on it.
+    pub threads: Option<NonZeroUsize>,
+    /// Where progress goes and where cancellation comes from.
+    pub progress: &'a dyn Progress,
+}
+
+impl Default for Context<'_> {
+    fn default() -> Self {
+        Context {
+            threads: None,
+            progress: &Silent,
+        }
+    }
+}
+
+impl Context<'_> {
+    /// Reports progress; an error when the caller wants to stop.
+    pub fn advance(&self, stage: Stage, done: u64, total: u64) -> Result<(), Cancelled> {
+        match self.progress.advance(stage, done, total) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Cancelled),
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! The handful of vector operations the pipeline needs, on `[f64; 3]`.
+
+use super::Point;
+
+/// `a - b`.
+#[inline]
+pub fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `a + b`.
+#[inline]
+pub fn add(a: Point, b: Point) -> Point {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// `a * k`.
+#[inline]
+pub fn scale(a: Point, k: f64) -> Point {
+    [a[0] * k, a[1] * k, a[2] * k]
+}
+
+/// The dot product.
+#[inline]
+pub fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// The cross product.
+#[inline]
+pub fn cross(a: Point, b: Point) -> Point {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// The squared length.
+#[inline]
+pub fn norm_sq(a: Point) -> f64 {
+    dot(a, a)
+}
+
+/// The length.
+#[inline]
+pub fn norm(a: Point) -> f64 {
+    norm_sq(a).sqrt()
+}
+
+/// The squared distance from `a` to `b`.
+#[inline]
+pub fn dist_sq(a: Point, b: Point) -> f64 {
+    norm_sq(sub(a, b))
+}

@@ -1,0 +1,1 @@
+//! Files in and out, on readers and writers, never on paths.

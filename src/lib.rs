@@ -1,0 +1,12 @@
+//! Watertight surfaces and medial axes from point clouds by the power crust
+//! (Amenta, Choi and Kolluri 2001).
+
+pub mod context;
+pub mod geom;
+pub mod io;
+pub mod mesh;
+pub mod surface;
+
+pub use context::{Cancelled, Context, Progress, Silent, Stage};
+pub use geom::{Ball, Bounds, Point, Side};
+pub use mesh::PolygonMesh;
