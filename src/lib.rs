@@ -2,11 +2,16 @@
 //! (Amenta, Choi and Kolluri 2001).
 
 pub mod context;
+pub mod error;
 pub mod geom;
 pub mod io;
 pub mod mesh;
+pub mod pipeline;
 pub mod surface;
 
 pub use context::{Cancelled, Context, Progress, Silent, Stage};
+pub use error::{Error, SampleError};
 pub use geom::{Ball, Bounds, Point, Side};
 pub use mesh::PolygonMesh;
+pub use pipeline::{reconstruct, Faces, Options, PolarBall, Reconstruction, Stats};
+pub use surface::{Crust, PowerShape};

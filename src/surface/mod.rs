@@ -2,4 +2,6 @@
 //! and 6): the crust between inner and outer cells, and the power shape.
 
 pub mod raw;
+mod shape;
 pub use raw::{Crust, RawCrust, NONE};
+pub use shape::PowerShape;
