@@ -40,4 +40,11 @@ fn main() {
         dt.counts
     );
     println!("bad {}", dt.complex.check().len());
+    let t = std::time::Instant::now();
+    let po = powercrust::poles::poles(&sm, &dt, &Default::default(), &Context::default()).unwrap();
+    println!("poles {} {:.3}", po.balls.len(), t.elapsed().as_secs_f64());
+    let t = std::time::Instant::now();
+    let pd = powercrust::power::power_diagram(&po.balls.sites, po.balls.lattice.step(), &Context::default()).unwrap();
+    println!("power cells {} hidden {} {:.3} {:?}", pd.complex.len(), pd.hidden.len(), t.elapsed().as_secs_f64(), pd.counts);
+    println!("bad {}", pd.complex.check().len());
 }

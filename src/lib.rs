@@ -8,6 +8,8 @@ pub mod geom;
 pub mod io;
 pub mod mesh;
 pub mod pipeline;
+pub mod poles;
+pub mod power;
 pub mod predicates;
 pub mod surface;
 pub mod tetra;
