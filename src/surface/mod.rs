@@ -1,7 +1,21 @@
 //! From labelled power cells to the surface (section 5 of the paper, steps 5
 //! and 6): the crust between inner and outer cells, and the power shape.
 
+#[cfg(test)]
+mod check;
+mod clean;
+mod contract;
+mod flat;
+mod halfedges;
+mod pinch;
+mod polygon;
 pub mod raw;
 mod shape;
+mod short;
+#[cfg(test)]
+mod tests;
+mod triangulate;
+pub use clean::{clean, CleanOptions};
 pub use raw::{Crust, RawCrust, NONE};
 pub use shape::PowerShape;
+pub use triangulate::triangulate;
