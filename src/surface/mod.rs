@@ -15,6 +15,7 @@ mod short;
 #[cfg(test)]
 mod tests;
 mod triangulate;
+mod unfold;
 pub use clean::{clean, CleanOptions};
 pub use raw::{Crust, RawCrust, NONE};
 pub use shape::PowerShape;

@@ -11,7 +11,7 @@ use super::contract::Places;
 use super::flat::vector_area;
 use super::halfedges::HalfEdges;
 use super::raw::NONE;
-use crate::geom::vec3::{dist_sq, dot};
+use crate::geom::vec3::{dist_sq, dot, norm};
 
 /// Contracts edges not longer than `tolerance`; returns half-edges of all
 /// faces that changed, which the caller must cut (see `contract`).
@@ -31,7 +31,7 @@ pub(crate) fn contract_short_edges(
         let (from, to) = (surface.tail(h), surface.head(h));
         if dist_sq(places.at(from), places.at(to)) > tolerance * tolerance
             || !links_meet_only_in_triangles(surface, h)
-            || turns_a_face_over(surface, places, h)
+            || turns_a_face_over(surface, places, h, tolerance)
         {
             continue;
         }
@@ -94,8 +94,9 @@ fn links_meet_only_in_triangles(surface: &HalfEdges, h: u32) -> bool {
     common == triangles
 }
 
-/// Whether moving the tail of `h` to its head turns a face over.
-fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32) -> bool {
+/// Whether moving the tail of `h` to its head turns a face over that is wider
+/// than the tolerance; narrower ones may have been upside down by rounding.
+fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32, tolerance: f64) -> bool {
     let (from, to) = (surface.tail(h), surface.head(h));
     let area = |first: u32, moved: bool| {
         let mut at = first;
@@ -114,8 +115,20 @@ fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32) -> bool {
     let mut g = h;
     loop {
         let dies = (g == h || g == surface.next(twin)) && is_triangle(surface, g);
-        if !dies && dot(area(g, false), area(g, true)) <= 0.0 {
-            return true;
+        let before = area(g, false);
+        if !dies && dot(before, area(g, true)) <= 0.0 {
+            let (mut longest, mut f) = (0.0, g);
+            loop {
+                longest =
+                    dist_sq(places.at(surface.tail(f)), places.at(surface.head(f))).max(longest);
+                f = surface.next(f);
+                if f == g {
+                    break;
+                }
+            }
+            if norm(before) > tolerance * longest.sqrt() {
+                return true;
+            }
         }
         g = surface.around(g);
         if g == h {
