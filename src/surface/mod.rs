@@ -9,6 +9,8 @@ mod flat;
 mod halfedges;
 mod pinch;
 mod polygon;
+#[cfg(test)]
+mod polygon_tests;
 pub mod raw;
 mod shape;
 mod short;

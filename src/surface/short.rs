@@ -136,3 +136,53 @@ fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32, tolerance: f6
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::contract::half_edges;
+    use super::super::raw::RawCrust;
+    use super::*;
+
+    /// A 4 by 4 torus of quadrilaterals is too coarse to lose many edges: all
+    /// that may go are gone without a change of its Euler characteristic.
+    #[test]
+    fn topology_stays_whatever_the_tolerance() {
+        let mut raw = RawCrust {
+            starts: vec![0],
+            ..RawCrust::default()
+        };
+        let id = |i: u32, j: u32| (i % 4) * 4 + j % 4;
+        for i in 0..4 {
+            for j in 0..4 {
+                raw.positions
+                    .push([f64::from(i), f64::from(j), f64::from(i * j)]);
+                raw.corners
+                    .extend([id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]);
+                raw.starts.push(raw.corners.len() as u32);
+                // The sides look down, right, up and left.
+                let side = |i: u32, j: u32, k: u32| 4 * id(i, j) + k;
+                raw.twins.extend([
+                    side(i, j + 3, 2),
+                    side(i + 1, j, 3),
+                    side(i, j + 1, 0),
+                    side(i + 3, j, 1),
+                ]);
+            }
+        }
+        raw.samples = vec![NONE; 16];
+        let (places, place_of) = Places::of(&raw);
+        let mut surface = half_edges(&raw, &place_of);
+        let mut cutter = super::super::contract::Cutter::new(16);
+        let contracted = contract_short_edges(&mut surface, &places, 1e9, |surface, h| {
+            cutter.cut(surface, h);
+        });
+        assert!(contracted > 0);
+        let edges = (0..surface.len() as u32)
+            .filter(|&h| surface.alive(h))
+            .count()
+            / 2;
+        let (vertices, faces) = (surface.fans().1 as usize, surface.faces().len());
+        assert_eq!(vertices + faces, edges);
+        assert_eq!(vertices, 16 - contracted);
+    }
+}

@@ -23,7 +23,7 @@ pub(crate) fn least_folded(
     let n = points.len();
     let normal = vector_area(points.iter().copied());
     let size = norm(normal);
-    if n > MOST || n < 3 || size <= 0.0 {
+    if !(3..=MOST).contains(&n) || size <= 0.0 {
         return false;
     }
     // best[i * n + j]: the cost of the corners i ..= j, and the third corner
