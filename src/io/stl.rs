@@ -1,0 +1,18 @@
+//! Stub.
+use super::*;
+pub fn read_cloud(_: &[u8], _: &ReadOptions) -> Result<Cloud, ReadError> {
+    Err(ReadError::Empty)
+}
+pub fn read_mesh(_: &[u8]) -> Result<PolygonMesh, ReadError> {
+    Err(ReadError::Empty)
+}
+pub fn write_mesh<W: Write>(
+    _: &mut W,
+    _: &PolygonMesh,
+    _: &WriteOptions,
+) -> Result<(), WriteError> {
+    Ok(())
+}
+pub fn looks_binary(_: &[u8]) -> bool {
+    false
+}
