@@ -2,12 +2,17 @@
 //! (Amenta, Choi and Kolluri 2001).
 
 pub mod context;
+pub mod delaunay;
 pub mod error;
 pub mod geom;
 pub mod io;
 pub mod mesh;
 pub mod pipeline;
+pub mod poles;
+pub mod power;
+pub mod predicates;
 pub mod surface;
+pub mod tetra;
 
 pub use context::{Cancelled, Context, Progress, Silent, Stage};
 pub use error::{Error, SampleError};
