@@ -123,7 +123,9 @@ pub(super) fn gather(
     let mut corners: Vec<u32> = Vec::new();
     for (_, k) in sequence {
         let from = firsts[k as usize] as usize;
-        let to = firsts.get(k as usize + 1).map_or(keyed.len(), |&next| next as usize);
+        let to = firsts
+            .get(k as usize + 1)
+            .map_or(keyed.len(), |&next| next as usize);
         let id = balls.sites.len() as u32;
         corners.clear();
         for (_, _, c) in &keyed[from..to] {
@@ -138,12 +140,9 @@ pub(super) fn gather(
             .map(|&v| power_weight(centre, &delaunay.sites[v as usize]))
             .fold(f64::INFINITY, f64::min);
         let weight = (nearest / (step * step)).round();
-        balls.sites.push([
-            centre[0] / step,
-            centre[1] / step,
-            centre[2] / step,
-            weight,
-        ]);
+        balls
+            .sites
+            .push([centre[0] / step, centre[1] / step, centre[2] / step, weight]);
         let real = corners.iter().filter(|&&v| !delaunay.is_frame(v));
         balls.touched.extend(real);
         balls.touch_starts.push(balls.touched.len() as u32);
@@ -169,6 +168,10 @@ pub(super) fn gather(
 /// The squared distance from a centre to a sample, in floats: exact to one
 /// part in 2^51, far below the noise of rounding the centre.
 fn power_weight(centre: Point, site: &Site) -> f64 {
-    let d = [centre[0] - site[0], centre[1] - site[1], centre[2] - site[2]];
+    let d = [
+        centre[0] - site[0],
+        centre[1] - site[1],
+        centre[2] - site[2],
+    ];
     d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
 }

@@ -70,8 +70,8 @@ fn pair(s: Point, cells: &[u32], centres: &[Point]) -> [u32; 2] {
                 continue;
             }
             let distance = dist_sq(centre, s);
-            let better = distance > reach
-                || (distance == reach && before(centre, centres[best as usize]));
+            let better =
+                distance > reach || (distance == reach && before(centre, centres[best as usize]));
             if better {
                 best = c;
                 reach = distance;
@@ -108,8 +108,7 @@ fn drop_misshapen(
     }
     let all = cells.iter().map(|&c| centres[c as usize]);
     let bound = skinny::feature_size_bound(s, centres[poles[0] as usize], all, lambda);
-    let fails = poles
-        .map(|p| p != NO_POLE && dist_sq(centres[p as usize], s) < bound * bound);
+    let fails = poles.map(|p| p != NO_POLE && dist_sq(centres[p as usize], s) < bound * bound);
     let mut kept = poles;
     let mut dropped = 0;
     for k in 0..2 {

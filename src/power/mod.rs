@@ -53,12 +53,7 @@ pub fn power_diagram(
 ) -> Result<PowerDiagram, Cancelled> {
     let mut sites = balls.to_vec();
     sites.extend(corners(LIMIT / scale));
-    let built = triangulate(
-        &InPower(&sites),
-        balls.len() as u32,
-        Stage::Power,
-        context,
-    )?;
+    let built = triangulate(&InPower(&sites), balls.len() as u32, Stage::Power, context)?;
     Ok(PowerDiagram {
         complex: built.complex,
         balls: balls.len(),
