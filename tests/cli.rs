@@ -211,7 +211,7 @@ fn unknown_option() {
 fn reals_out_of_range() {
     let place = Place::with_torus();
     for (flag, said) in [
-        ("--lambda 0", "--lambda is 0: expected above 0"),
+        ("--lambda 0", "--lambda is 0: expected a number in (0, 1]"),
         ("--lambda 1.5", "--lambda is 1.5"),
         ("--lambda -.5", "--lambda is -0.5"),
         ("--lambda -1e-3", "--lambda is -0.001"),

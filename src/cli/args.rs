@@ -162,7 +162,7 @@ pub struct Reconstruct {
     #[arg(long, value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub deep_angle: Option<f64>,
 
-    /// Size of the frame over that of the points' box: 1.5 to 100, by
+    /// Size of the frame over that of the points' box: 2 to 100, by
     /// default 5.
     #[arg(long, value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub box_factor: Option<f64>,

@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat, ReadOptions, WriteOptions};
-use powercrust::{Faces, Options};
+use powercrust::{Error, Faces, Options};
 
 use super::args::Reconstruct;
 use super::fail::{name, reason, Failure};
@@ -212,23 +212,7 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         lambda = Some(SHARP_LAMBDA);
         decisions.push(format!("--sharp without --lambda: taking {SHARP_LAMBDA}"));
     }
-    if let Some(value) = lambda {
-        let fits = value > 0.0 && value <= 1.0;
-        in_range("--lambda", value, fits, "above 0 and at most 1")?;
-    }
-    if let Some(value) = args.deep_angle {
-        let fits = value > 90.0 && value < 180.0;
-        in_range("--deep-angle", value, fits, "degrees between 90 and 180")?;
-    }
-    if let Some(value) = args.box_factor {
-        let fits = (1.5..=100.0).contains(&value);
-        in_range("--box-factor", value, fits, "1.5 to 100")?;
-    }
-    if let Some(value) = args.merge {
-        let fits = (0.0..=1.0).contains(&value);
-        in_range("--merge", value, fits, "0 to 1")?;
-    }
-    Ok(Options {
+    let options = Options {
         lambda,
         sharp: args.sharp,
         deep_angle: args.deep_angle.unwrap_or(plain.deep_angle),
@@ -239,16 +223,24 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         } else {
             Faces::Triangles
         },
-    })
+    };
+    match options.validate() {
+        Ok(()) => Ok(options),
+        Err(Error::Option {
+            name,
+            value,
+            expected,
+        }) => Err(out_of_range(name, value, expected)),
+        Err(other) => Err(Failure::usage(other.to_string())),
+    }
 }
 
-fn in_range(flag: &str, value: f64, fits: bool, expected: &str) -> Result<(), Failure> {
-    if fits {
-        return Ok(());
-    }
-    Err(Failure::usage(format!(
-        "{flag} is {value}: expected {expected}"
-    )))
+/// An option out of range, by the name of its flag.
+pub fn out_of_range(name: &str, value: f64, expected: &str) -> Failure {
+    Failure::usage(format!(
+        "--{} is {value}: expected {expected}",
+        name.replace('_', "-")
+    ))
 }
 
 /// Lines for the head of the files: enough to make them again.

@@ -33,19 +33,19 @@ impl Report {
         let head = json!({
             "powercrust": env!("CARGO_PKG_VERSION"),
             "input": { "file": name(&plan.input), "read": input },
-            "options": plan.options,
             "mesh": {
                 "vertices": mesh.vertices.len(),
                 "faces": mesh.face_count(),
                 "components": topology.components,
                 "genus": topology.genus,
-                "volume": mesh.volume(),
+                "volume": result.stats.volume,
             },
         });
         let mut stats = head.clone();
         stats["stats"] = json!(result.stats);
         let mut summary = head;
         summary["ok"] = json!(true);
+        summary["options"] = json!(plan.options);
         for (key, shape) in [("inner_axis", &inner_axis), ("outer_axis", &outer_axis)] {
             if let Some(shape) = shape {
                 summary[key] = json!({

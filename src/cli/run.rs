@@ -14,7 +14,7 @@ use serde_json::json;
 use super::fail::{name, reason, Code, Failure};
 use super::formats::dotted;
 use super::output::{Staged, Target};
-use super::plan::Plan;
+use super::plan::{out_of_range, Plan};
 use super::report::Report;
 use super::show::{counted, Bar, Talk};
 use super::stop;
@@ -151,10 +151,7 @@ fn unsolved(plan: &Plan, error: Error) -> Failure {
             name,
             value,
             expected,
-        } => Failure::usage(format!(
-            "--{} is {value}: expected {expected}",
-            name.replace('_', "-")
-        )),
+        } => out_of_range(name, value, expected),
         Error::NothingInside { .. } if plan.options.lambda.is_some() => {
             unfit.hint("the sampling may be too sparse for --lambda and --sharp: try without")
         }
