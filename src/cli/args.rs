@@ -228,6 +228,10 @@ pub struct Check {
     #[arg(long)]
     pub json: bool,
 
+    /// Threads to use, by default all.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+
     /// Print nothing; only the exit code tells.
     #[arg(short, long, conflicts_with = "json")]
     pub quiet: bool,

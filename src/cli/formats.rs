@@ -51,13 +51,18 @@ pub fn input_format(path: &Path, said: Option<&str>) -> Result<Option<CloudForma
     Ok(CloudFormat::from_extension(extension))
 }
 
+/// A mesh format by the name a flag gives it.
+pub fn named_mesh_format(flag: &str, said: &str) -> Result<MeshFormat, Failure> {
+    MeshFormat::from_extension(said).ok_or_else(|| {
+        Failure::usage(format!("{flag} {said}: unknown format"))
+            .hint(format!("known: {}", dotted(MeshFormat::extensions())))
+    })
+}
+
+/// The format to write the mesh in; PLY for standard output.
 pub fn mesh_format(path: &Path, said: Option<&str>) -> Result<MeshFormat, Failure> {
-    let known = || dotted(MeshFormat::extensions());
     if let Some(said) = said {
-        return MeshFormat::from_extension(said).ok_or_else(|| {
-            Failure::usage(format!("--output-format {said}: unknown format"))
-                .hint(format!("known: {}", known()))
-        });
+        return named_mesh_format("--output-format", said);
     }
     if path.as_os_str() == "-" {
         return Ok(MeshFormat::Ply);
@@ -72,7 +77,8 @@ pub fn mesh_format(path: &Path, said: Option<&str>) -> Result<MeshFormat, Failur
         {
             format!("for a medial axis: --mat {}", path.display())
         } else {
-            format!("known: {}; or say --output-format ply", known())
+            let known = dotted(MeshFormat::extensions());
+            format!("known: {known}; or say --output-format ply")
         },
     ))
 }

@@ -14,7 +14,6 @@ mod report;
 mod run;
 mod show;
 mod stop;
-mod topology;
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::process::ExitCode;

@@ -3,18 +3,20 @@
 use std::time::Instant;
 
 use powercrust::io::ReadReport;
-use powercrust::{Faces, PowerShape, Reconstruction, Side};
+use powercrust::mesh::{check, CheckOptions, Report as Findings};
+use powercrust::{Cancelled, Context, Faces, PowerShape, Reconstruction, Side};
 use serde_json::{json, Value};
 
 use super::fail::name;
 use super::output::Target;
 use super::plan::Plan;
 use super::show::{counted, grouped, Talk};
-use super::topology::Topology;
 
 /// What the run found, for the summary, `--json` and `--stats`.
 pub struct Report {
-    topology: Topology,
+    findings: Findings,
+    samples: usize,
+    stages: Vec<(String, f64)>,
     pub inner_axis: Option<PowerShape>,
     pub outer_axis: Option<PowerShape>,
     /// For `--json`.
@@ -24,9 +26,20 @@ pub struct Report {
 }
 
 impl Report {
-    pub fn new(plan: &Plan, result: &Reconstruction, input: ReadReport, start: Instant) -> Report {
-        let mesh = &result.crust.mesh;
-        let topology = Topology::of(mesh);
+    /// Judges the mesh and gathers what else there is to tell.
+    pub fn new(
+        plan: &Plan,
+        result: &Reconstruction,
+        input: ReadReport,
+        context: &Context,
+    ) -> Result<Report, Cancelled> {
+        // A mesh is never handed on unseen: the test for crossing faces costs
+        // about a tenth of the run.
+        let options = CheckOptions {
+            max_findings: 0,
+            ..CheckOptions::default()
+        };
+        let findings = check(&result.crust.mesh, &options, context)?;
         let shape = |wanted: bool, side| wanted.then(|| result.power_shape(side));
         let inner_axis = shape(plan.inner_axis.is_some(), Side::Inner);
         let outer_axis = shape(plan.outer_axis.is_some(), Side::Outer);
@@ -34,11 +47,18 @@ impl Report {
             "powercrust": env!("CARGO_PKG_VERSION"),
             "input": { "file": name(&plan.input), "read": input },
             "mesh": {
-                "vertices": mesh.vertices.len(),
-                "faces": mesh.face_count(),
-                "components": topology.components,
-                "genus": topology.genus,
-                "volume": result.stats.volume,
+                "vertices": findings.vertices,
+                "faces": findings.faces,
+                "closed": findings.is_closed(),
+                "manifold": findings.counts.non_manifold_edge + findings.counts.pinched_vertex == 0,
+                "watertight": findings.is_watertight(),
+                "crossing": findings.counts.crossing,
+                "touching": findings.counts.touching,
+                "components": findings.components,
+                "genus": findings.genus,
+                "cavities": findings.cavities,
+                "volume": findings.volume,
+                "area": findings.area,
             },
         });
         let mut stats = head.clone();
@@ -46,6 +66,8 @@ impl Report {
         let mut summary = head;
         summary["ok"] = json!(true);
         summary["options"] = json!(plan.options);
+        summary["samples"] = json!(result.stats.samples);
+        summary["duplicates"] = json!(result.stats.duplicates);
         for (key, shape) in [("inner_axis", &inner_axis), ("outer_axis", &outer_axis)] {
             if let Some(shape) = shape {
                 summary[key] = json!({
@@ -56,55 +78,61 @@ impl Report {
                 });
             }
         }
-        summary["samples"] = json!(result.stats.samples);
-        summary["duplicates"] = json!(result.stats.duplicates);
-        summary["seconds"] = json!(start.elapsed().as_secs_f64());
-        Report {
-            topology,
+        Ok(Report {
+            findings,
+            samples: result.stats.samples,
+            stages: result.stats.seconds.clone(),
             inner_axis,
             outer_axis,
             summary,
             stats,
-        }
+        })
     }
 
     /// The summary, on the streams that the plan allows.
-    pub fn tell(&self, plan: &Plan, start: Instant) {
-        if let Some(stages) = self.stats["stats"]["seconds"].as_array() {
-            for stage in stages {
-                if let (Some(stage), Some(seconds)) = (stage[0].as_str(), stage[1].as_f64()) {
-                    plan.talk
-                        .at(Talk::Verbose, format_args!("{stage:>10} {seconds:8.3} s"));
-                }
-            }
+    pub fn tell(mut self, plan: &Plan, start: Instant) {
+        let seconds = start.elapsed().as_secs_f64();
+        for (stage, seconds) in &self.stages {
+            let line = format_args!("{stage:>10} {seconds:8.3} s");
+            plan.talk.at(Talk::Verbose, line);
         }
         plan.talk.at(Talk::Debug, format_args!("{:#}", self.stats));
-        let place = plan.mesh.as_ref().map_or("crust".to_owned(), |out| {
-            if out.target == Target::Stdout {
-                "standard output".to_owned()
-            } else {
-                out.path.display().to_string()
-            }
-        });
+        plan.talk.at(Talk::Plain, self.line(plan, seconds));
+        if plan.json {
+            self.summary["seconds"] = json!(seconds);
+            let text = format!("{:#}\n", self.summary);
+            let _ = Target::Stdout.stage(|out| out.write_all(text.as_bytes()));
+        }
+    }
+
+    fn line(&self, plan: &Plan, seconds: f64) -> String {
+        let place = match &plan.mesh {
+            Some(out) if out.target == Target::Stdout => "standard output".to_owned(),
+            Some(out) => out.path.display().to_string(),
+            None => name(&plan.input),
+        };
         let (one, many) = match plan.options.faces {
             Faces::Triangles => ("triangle", "triangles"),
             Faces::Polygons => ("polygon", "polygons"),
         };
-        let count = |value: &Value| value.as_u64().unwrap_or(0) as usize;
-        plan.talk.at(
-            Talk::Plain,
-            format_args!(
-                "{place}: {} samples, {}, {}, genus {}, {:.2} s",
-                grouped(count(&self.summary["samples"])),
-                counted(count(&self.summary["mesh"]["faces"]), one, many),
-                counted(self.topology.components, "component", "components"),
-                self.topology.genus,
-                start.elapsed().as_secs_f64(),
-            ),
-        );
-        if plan.json {
-            let text = format!("{:#}\n", self.summary);
-            let _ = Target::Stdout.stage(|w| w.write_all(text.as_bytes()));
+        let found = &self.findings;
+        let mut parts = vec![
+            format!("{} samples", grouped(self.samples)),
+            counted(found.faces as usize, one, many),
+            counted(found.components as usize, "component", "components"),
+        ];
+        if let Some(genus) = found.genus {
+            parts.push(format!("genus {genus}"));
         }
+        if !found.is_closed() {
+            parts.push("not closed (a bug: please report it)".to_owned());
+        }
+        let meet = found.counts.crossing + found.counts.touching;
+        if meet > 0 {
+            let pairs = counted(meet as usize, "pair", "pairs");
+            parts.push(format!("{pairs} of faces cross or touch"));
+        }
+        parts.push(format!("{seconds:.2} s"));
+        format!("{place}: {}", parts.join(", "))
     }
 }

@@ -49,16 +49,17 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     );
 
     let bar = Bar::new(plan.talk);
-    let outcome = powercrust::reconstruct(
-        &cloud.points,
-        &plan.options,
-        &Context {
-            threads: plan.threads,
-            progress: &bar,
-        },
-    );
+    let context = Context {
+        threads: plan.threads,
+        progress: &bar,
+    };
+    let outcome =
+        powercrust::reconstruct(&cloud.points, &plan.options, &context).and_then(|result| {
+            let report = Report::new(plan, &result, cloud.report, &context)?;
+            Ok((result, report))
+        });
     bar.clear();
-    let result = outcome.map_err(|error| unsolved(plan, error))?;
+    let (result, report) = outcome.map_err(|error| unsolved(plan, error))?;
     if result.stats.duplicates > 0 {
         plan.talk.at(
             Talk::Plain,
@@ -73,7 +74,6 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         );
     }
 
-    let report = Report::new(plan, &result, cloud.report, start);
     write_results(plan, &result, &report)?;
     report.tell(plan, start);
     Ok(ExitCode::SUCCESS)
