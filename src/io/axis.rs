@@ -115,7 +115,7 @@ fn write_ma<W: Write>(
         out.text("v ");
         out.triple(b.centre);
         out.text(" ");
-        out.number(b.radius());
+        out.number(b.radius);
         out.text("\n");
         out.record()?;
     }

@@ -194,7 +194,7 @@ pub fn write_axis<W: Write>(
     out.text("{");
     list(&mut out, "balls", shape.balls.iter(), |o, b| {
         let [x, y, z] = b.centre;
-        reals(o, &[x, y, z, b.radius()]);
+        reals(o, &[x, y, z, b.radius]);
     })?;
     out.text(",\n");
     list(&mut out, "ids", shape.ids.iter(), |o, &i| {

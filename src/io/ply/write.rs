@@ -296,7 +296,7 @@ pub fn write_axis<W: Write>(
         for c in ball.centre {
             ply.real(c);
         }
-        ply.real(ball.radius());
+        ply.real(ball.radius);
         if let Some(&id) = shape.ids.get(i) {
             ply.index(id);
         }
@@ -337,7 +337,7 @@ pub fn write_balls<W: Write>(
         for c in b.ball.centre {
             ply.real(c);
         }
-        ply.real(b.ball.radius());
+        ply.real(b.ball.radius);
         ply.byte(match b.side {
             Side::Inner => 0,
             Side::Outer => 1,
