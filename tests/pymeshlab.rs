@@ -125,11 +125,14 @@ fn prepare(case: &Case, count: usize, folder: &Path) -> PolygonMesh {
     let write = |part: &str, bytes: Vec<u8>| {
         std::fs::write(folder.join(format!("{}.{part}", case.name)), bytes).expect("it writes");
     };
-    let raw = |points: &[Point]| points.as_flattened().iter().flat_map(|x| x.to_le_bytes());
-    write("samples.f64", raw(&samples).collect());
-    write("truth.f64", raw(&truth).collect());
-    write("edges.f64", raw(&edges).collect());
-    write("crust.vertices.f64", raw(&mesh.vertices).collect());
+    let raw = |points: &[Point]| -> Vec<u8> {
+        let numbers = points.as_flattened().iter();
+        numbers.flat_map(|x| x.to_le_bytes()).collect()
+    };
+    write("samples.f64", raw(&samples));
+    write("truth.f64", raw(&truth));
+    write("edges.f64", raw(&edges));
+    write("crust.vertices.f64", raw(&mesh.vertices));
     let corners = mesh.corners.iter().flat_map(|c| c.to_le_bytes());
     write("crust.triangles.u32", corners.collect());
     mesh
