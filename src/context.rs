@@ -81,6 +81,20 @@ impl Default for Context<'_> {
 }
 
 impl Context<'_> {
+    /// Runs `work` on as many threads as asked for.
+    pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        let pool = self.threads.and_then(|n| {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(n.get())
+                .build()
+                .ok()
+        });
+        match pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
     /// Reports progress; an error when the caller wants to stop.
     pub fn advance(&self, stage: Stage, done: u64, total: u64) -> Result<(), Cancelled> {
         match self.progress.advance(stage, done, total) {

@@ -1,54 +1,18 @@
 //! Points in, surface and medial axis out: the stages in order.
 
-use crate::context::Context;
+use std::time::Instant;
+
+use crate::context::{Context, Stage};
+use crate::delaunay::{delaunay, samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
-use crate::surface::{Crust, PowerShape};
-
-/// What the user may say. The default says nothing and suits clean scans.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Options {
-    /// Skinniness bound `lambda` of section 6.1, the user's estimate of r';
-    /// in (0, 1]. `None` keeps every pole.
-    pub lambda: Option<f64>,
-    /// Drop both poles of a sample whose cell fails the skinniness test
-    /// (section 6.2), so that faces extend to sharp edges. Needs `lambda`.
-    pub sharp: bool,
-    /// Angle in degrees, in (90, 180), above which two balls intersect deeply
-    /// and share evidence (section 5.2).
-    pub deep_angle: f64,
-    /// Half-side of the frame over half the largest side of the samples'
-    /// bounding box; in [1.5, 100].
-    pub box_factor: f64,
-    /// Balls are merged when the surface moves by less than this share of the
-    /// sampling error (fact F6); in [0, 1], 0 merges identical balls only.
-    pub merge: f64,
-    /// Polygons as the power diagram has them, or triangles.
-    pub faces: Faces,
-}
-
-/// The kind of faces wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Faces {
-    /// Triangles only.
-    Triangles,
-    /// The polygons between cells.
-    Polygons,
-}
-
-impl Default for Options {
-    fn default() -> Options {
-        Options {
-            lambda: None,
-            sharp: false,
-            deep_angle: 113.578_178_478_201_83,
-            box_factor: 5.0,
-            merge: 0.1,
-            faces: Faces::Triangles,
-        }
-    }
-}
+use crate::label::{energy, label, opposites, Evidence, LabelOptions, Neighbours};
+use crate::options::{Faces, Options};
+use crate::poles::{poles, PoleOptions};
+use crate::power::{power_diagram, PowerDiagram};
+use crate::simplify::merge_redundant;
+use crate::stats::Stats;
+use crate::surface::{clean, power_shape, raw_crust, triangulate, Crust, Placement, PowerShape};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,22 +21,8 @@ pub struct PolarBall {
     pub ball: Ball,
     /// Its label.
     pub side: Side,
-    /// One sample of which it is a pole (the smallest sample id).
+    /// One sample it touches (the smallest sample id).
     pub sample: u32,
-}
-
-/// Counts, timings and every option of one run; the content of `--stats`.
-#[derive(Clone, Debug, Default, serde::Serialize)]
-pub struct Stats {
-    /// Points given.
-    pub points: usize,
-    /// Distinct samples.
-    pub samples: usize,
-    /// Points merged into an equal one.
-    pub duplicates: usize,
-    /// Seconds by stage, in order.
-    pub seconds: Vec<(String, f64)>,
-    // more follow
 }
 
 /// The result: everything owned, nothing borrowed.
@@ -85,22 +35,180 @@ pub struct Reconstruction {
     /// For each sample id (the `vertex_samples` of the crust) the index of
     /// the first input point at that place.
     pub sample_source: Vec<u32>,
+    /// The power diagram of the balls; its sites are in lattice units.
+    pub power: PowerDiagram,
     /// Counts and timings.
     pub stats: Stats,
 }
 
 impl Reconstruction {
     /// The power shape of one side: the approximate medial axis (section 3.4).
-    pub fn power_shape(&self, _side: Side) -> PowerShape {
-        unimplemented!()
+    pub fn power_shape(&self, side: Side) -> PowerShape {
+        let balls: Vec<Ball> = self.balls.iter().map(|b| b.ball).collect();
+        let sides: Vec<Side> = self.balls.iter().map(|b| b.side).collect();
+        power_shape(&self.power, &balls, &sides, side)
     }
 }
 
 /// Points in, watertight crust and medial axis out (section 5).
+///
+/// # Errors
+/// [`Error`]: points that bound no solid, options out of range, cancellation.
+///
+/// ```
+/// use powercrust::{reconstruct, Context, Options};
+/// // The corners and face centres of a cube.
+/// let mut points = vec![];
+/// for x in -1..=1 { for y in -1..=1 { for z in -1..=1 {
+///     if [x, y, z] != [0, 0, 0] { points.push([x as f64, y as f64, z as f64]); }
+/// }}}
+/// let result = reconstruct(&points, &Options::default(), &Context::default())?;
+/// assert!((result.crust.mesh.volume() - 8.0).abs() < 1.5);
+/// # Ok::<(), powercrust::Error>(())
+/// ```
 pub fn reconstruct(
-    _points: &[Point],
-    _options: &Options,
-    _context: &Context,
+    points: &[Point],
+    options: &Options,
+    context: &Context,
 ) -> Result<Reconstruction, Error> {
-    unimplemented!()
+    options.validate()?;
+    context.install(|| run(points, options, context))
+}
+
+fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconstruction, Error> {
+    let mut stats = Stats::new(options);
+    let mut clock = Clock::start();
+
+    // 1. Samples, frame, Delaunay triangulation.
+    context.advance(Stage::Samples, 0, points.len() as u64)?;
+    let samples = samples(points, options.box_factor)?;
+    stats.points = points.len();
+    stats.samples = samples.len();
+    stats.duplicates = points.len() - samples.len();
+    clock.lap(Stage::Samples, &mut stats);
+    let delaunay = delaunay(&samples, context)?;
+    stats.delaunay_cells = delaunay.complex.len();
+    stats.delaunay_predicates = delaunay.counts;
+    clock.lap(Stage::Delaunay, &mut stats);
+
+    // 2. Poles; balls that say nothing new are merged (fact F6).
+    let chosen = PoleOptions {
+        lambda: options.lambda,
+        sharp: options.sharp,
+    };
+    let poles = poles(&samples, &delaunay, &chosen, context)?;
+    stats.skinny_samples = poles.skinny_samples;
+    stats.poles_dropped = poles.dropped;
+    stats.poles = poles.balls.len();
+    let poles = merge_redundant(&samples, &delaunay, poles, options.merge);
+    drop(delaunay);
+    stats.balls = poles.balls.len();
+    clock.lap(Stage::Poles, &mut stats);
+
+    // 3. Power diagram.
+    let step = poles.balls.lattice.step();
+    let power = power_diagram(&poles.balls.sites, step, context)?;
+    stats.power_cells = power.complex.len();
+    stats.hidden_balls = power.hidden.len();
+    stats.power_predicates = power.counts;
+    clock.lap(Stage::Power, &mut stats);
+
+    // 4. Labels, by the geometry on the lattice: no overflow at any scale.
+    let on_lattice: Vec<Ball> = poles
+        .balls
+        .sites
+        .iter()
+        .map(|s| Ball::new([s[0] * step, s[1] * step, s[2] * step], s[3].sqrt() * step))
+        .collect();
+    let sites: Vec<Point> = samples.sites.iter().map(|s| [s[0], s[1], s[2]]).collect();
+    let pairs = opposites(&poles.of_sample, &sites, &on_lattice);
+    let evidence = Evidence {
+        balls: &on_lattice,
+        outer: &poles.balls.touches_frame,
+        opposites: &pairs,
+    };
+    let neighbours = Neighbours::of(&power);
+    let how = LabelOptions {
+        deep: -options.deep_angle.to_radians().cos(),
+    };
+    let labels = label(&evidence, &neighbours, &how, context)?;
+    stats.unreached_balls = labels.unreached;
+    stats.label_energy = energy(&evidence, &neighbours, &labels.sides, &how);
+    stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();
+    drop(neighbours);
+    clock.lap(Stage::Labels, &mut stats);
+
+    // 5. Crust.
+    context.advance(Stage::Crust, 0, 3)?;
+    let lattice = samples.lattice;
+    let place = Placement {
+        touching: &|b| poles.balls.touching(b),
+        sample: &|s| samples.points[s as usize],
+        to_user: &|p| lattice.to_user([p[0] * step, p[1] * step, p[2] * step]),
+    };
+    let raw = raw_crust(&power, &labels.sides, &place);
+    if raw.balls.is_empty() {
+        return Err(Error::NothingInside {
+            samples: samples.len(),
+        });
+    }
+    stats.power_faces = raw.balls.len();
+    context.advance(Stage::Crust, 1, 3)?;
+    let mut crust = clean(raw);
+    stats.polygons = crust.mesh.face_count();
+    context.advance(Stage::Crust, 2, 3)?;
+    if options.faces == Faces::Triangles {
+        crust = triangulate(&crust);
+    }
+    if crust.mesh.face_count() == 0 {
+        return Err(Error::NothingInside {
+            samples: samples.len(),
+        });
+    }
+    stats.vertices = crust.mesh.vertices.len();
+    stats.faces = crust.mesh.face_count();
+    stats.volume = crust.mesh.volume();
+    context.advance(Stage::Crust, 3, 3)?;
+    let balls = on_lattice
+        .iter()
+        .zip(&labels.sides)
+        .enumerate()
+        .map(|(b, (ball, &side))| PolarBall {
+            ball: Ball::new(
+                lattice.to_user(ball.centre),
+                lattice.length_to_user(ball.radius),
+            ),
+            side,
+            sample: poles
+                .balls
+                .touching(b as u32)
+                .first()
+                .copied()
+                .unwrap_or(u32::MAX),
+        })
+        .collect();
+    clock.lap(Stage::Crust, &mut stats);
+    Ok(Reconstruction {
+        crust,
+        balls,
+        sample_source: samples.source,
+        power,
+        stats,
+    })
+}
+
+/// Measures the stages.
+struct Clock(Instant);
+
+impl Clock {
+    fn start() -> Clock {
+        Clock(Instant::now())
+    }
+
+    fn lap(&mut self, stage: Stage, stats: &mut Stats) {
+        let now = Instant::now();
+        let seconds = now.duration_since(self.0).as_secs_f64();
+        stats.seconds.push((stage.name().to_string(), seconds));
+        self.0 = now;
+    }
 }

@@ -8,22 +8,14 @@ use super::{vec3, Point};
 pub struct Ball {
     /// Centre, in the units of the input.
     pub centre: Point,
-    /// Squared radius. Never negative.
-    pub radius_sq: f64,
+    /// Radius, in the units of the input. Never negative.
+    pub radius: f64,
 }
 
 impl Ball {
     /// The ball about `centre` with the given radius.
     pub fn new(centre: Point, radius: f64) -> Ball {
-        Ball {
-            centre,
-            radius_sq: radius * radius,
-        }
-    }
-
-    /// The radius, in the units of the input.
-    pub fn radius(&self) -> f64 {
-        self.radius_sq.sqrt()
+        Ball { centre, radius }
     }
 
     /// The power distance `|x - c|² - r²` of a point: negative inside the
@@ -36,7 +28,7 @@ impl Ball {
     /// assert_eq!(ball.power([0.0, 2.0, 0.0]), 0.0);
     /// ```
     pub fn power(&self, x: Point) -> f64 {
-        vec3::dist_sq(x, self.centre) - self.radius_sq
+        vec3::dist_sq(x, self.centre) - self.radius * self.radius
     }
 
     /// How deeply two balls intersect, as `-cos alpha` of the angle at which
@@ -44,7 +36,7 @@ impl Ball {
     /// other, 0 when they cross at right angles, -1 when they touch from
     /// outside. `None` for disjoint balls, which say nothing about each other.
     pub fn depth(&self, other: &Ball) -> Option<f64> {
-        let (p, q) = (self.radius(), other.radius());
+        let (p, q) = (self.radius, other.radius);
         let distance_sq = vec3::dist_sq(self.centre, other.centre);
         let both = p + q;
         if distance_sq >= both * both {
@@ -54,7 +46,7 @@ impl Ball {
         if denominator <= 0.0 {
             return None;
         }
-        let cosine = (self.radius_sq + other.radius_sq - distance_sq) / denominator;
+        let cosine = (p * p + q * q - distance_sq) / denominator;
         Some(cosine.clamp(-1.0, 1.0))
     }
 }

@@ -1,0 +1,91 @@
+//! What the user may say. The default says nothing and suits clean scans.
+
+use crate::error::Error;
+
+/// Options of a reconstruction.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Options {
+    /// Skinniness bound `lambda` of section 6.1, the user's estimate of r';
+    /// in (0, 1]. `None` keeps every pole.
+    pub lambda: Option<f64>,
+    /// Drop both poles of a sample whose cell fails the skinniness test
+    /// (section 6.2), so that faces extend to sharp edges. Needs `lambda`.
+    pub sharp: bool,
+    /// Angle in degrees, in (90, 180), above which two balls intersect deeply
+    /// and share evidence (section 5.2).
+    pub deep_angle: f64,
+    /// Half-side of the frame over half the largest side of the samples'
+    /// bounding box; in [2, 100].
+    pub box_factor: f64,
+    /// Balls are merged when the surface moves by less than this share of the
+    /// sampling error (fact F6); in [0, 1], 0 merges identical balls only.
+    pub merge: f64,
+    /// Polygons as the power diagram has them, or triangles.
+    pub faces: Faces,
+}
+
+/// The kind of faces wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Faces {
+    /// Triangles only.
+    Triangles,
+    /// The polygons between cells.
+    Polygons,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            lambda: None,
+            sharp: false,
+            deep_angle: 113.578_178_478_201_83,
+            box_factor: 5.0,
+            merge: 0.1,
+            faces: Faces::Triangles,
+        }
+    }
+}
+
+impl Options {
+    /// Checks the documented ranges.
+    ///
+    /// # Errors
+    /// [`Error::Option`] names the first option out of range.
+    ///
+    /// ```
+    /// use powercrust::Options;
+    /// let options = Options { lambda: Some(7.0), ..Options::default() };
+    /// assert_eq!(
+    ///     options.validate().unwrap_err().to_string(),
+    ///     "option lambda is 7: expected a number in (0, 1]"
+    /// );
+    /// ```
+    pub fn validate(&self) -> Result<(), Error> {
+        let within = |name, value: f64, ok: bool, expected| {
+            if ok {
+                Ok(())
+            } else {
+                Err(Error::Option {
+                    name,
+                    value,
+                    expected,
+                })
+            }
+        };
+        if let Some(lambda) = self.lambda {
+            let ok = lambda > 0.0 && lambda <= 1.0;
+            within("lambda", lambda, ok, "a number in (0, 1]")?;
+        }
+        if self.sharp && self.lambda.is_none() {
+            within("sharp", 1.0, false, "lambda beside it")?;
+        }
+        let angle = self.deep_angle;
+        let ok = angle > 90.0 && angle < 180.0;
+        within("deep_angle", angle, ok, "degrees in (90, 180)")?;
+        let ok = (2.0..=100.0).contains(&self.box_factor);
+        within("box_factor", self.box_factor, ok, "a number in [2, 100]")?;
+        let ok = (0.0..=1.0).contains(&self.merge);
+        within("merge", self.merge, ok, "a number in [0, 1]")
+    }
+}

@@ -1,0 +1,177 @@
+//! The polar balls as sites of the power diagram.
+
+use rayon::prelude::*;
+
+use super::NO_POLE;
+use crate::delaunay::Delaunay;
+use crate::geom::Point;
+use crate::predicates::Site;
+use crate::tetra::order;
+
+/// The coarser lattice of the balls: its step is `2^shift` lattice steps of
+/// the samples.
+///
+/// A centre on it is off by at most half a step in each coordinate, so a ball
+/// of radius r misses its own samples by about `r` steps in power. That noise
+/// decides the degenerate tests around every sample (fact F1); the coarser
+/// the lattice, the farther it stands above the rounding of floats and the rarer the integer stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BallLattice {
+    /// log2 of the step, in steps of the sample lattice.
+    pub shift: i32,
+}
+
+impl BallLattice {
+    /// 2^-32 of the bounding box.
+    pub const DEFAULT: BallLattice = BallLattice { shift: 10 };
+
+    /// The step, in steps of the sample lattice.
+    pub fn step(self) -> f64 {
+        2f64.powi(self.shift)
+    }
+}
+
+/// Balls on the ball lattice, with the samples they touch.
+#[derive(Clone, Debug)]
+pub struct Balls {
+    /// Centre and squared radius of each ball, in steps of the ball lattice.
+    pub sites: Vec<Site>,
+    /// The lattice.
+    pub lattice: BallLattice,
+    /// Ball `b` touches the samples
+    /// `touched[touch_starts[b]..touch_starts[b + 1]]`, ascending.
+    pub touch_starts: Vec<u32>,
+    /// Samples touched, ball after ball.
+    pub touched: Vec<u32>,
+    /// Whether the ball touches a corner of the frame: it is outside.
+    pub touches_frame: Vec<bool>,
+}
+
+impl Balls {
+    /// Number of balls.
+    pub fn len(&self) -> usize {
+        self.sites.len()
+    }
+
+    /// Whether there is no ball.
+    pub fn is_empty(&self) -> bool {
+        self.sites.is_empty()
+    }
+
+    /// The samples ball `b` touches, ascending.
+    pub fn touching(&self, b: u32) -> &[u32] {
+        let b = b as usize;
+        &self.touched[self.touch_starts[b] as usize..self.touch_starts[b + 1] as usize]
+    }
+}
+
+/// Makes balls of the chosen cells: equal centres are one ball.
+pub(super) fn gather(
+    delaunay: &Delaunay,
+    centres: &[Point],
+    chosen: &[[u32; 2]],
+    lattice: BallLattice,
+) -> (Balls, Vec<[u32; 2]>) {
+    let mut used = vec![false; centres.len()];
+    for &c in chosen.iter().flatten() {
+        if c != NO_POLE {
+            used[c as usize] = true;
+        }
+    }
+    // Order along the curve by centre; equal centres end up side by side.
+    let half = crate::predicates::LIMIT / 2.0;
+    let mut keyed: Vec<(u64, Point, u32)> = (0..centres.len() as u32)
+        .into_par_iter()
+        .filter(|&c| used[c as usize])
+        .map(|c| {
+            let p = centres[c as usize];
+            (order::key(&[p[0], p[1], p[2], 0.0], half / 2.0), p, c)
+        })
+        .collect();
+    keyed.par_sort_unstable_by(|a, b| {
+        let place = (0..3).fold(a.0.cmp(&b.0), |o, k| o.then(a.1[k].total_cmp(&b.1[k])));
+        place.then(a.2.cmp(&b.2))
+    });
+    let mut firsts: Vec<u32> = Vec::new();
+    for k in 0..keyed.len() {
+        if k == 0 || keyed[k].1 != keyed[k - 1].1 {
+            firsts.push(k as u32);
+        }
+    }
+    let count = firsts.len();
+    let rounds = order::rounds(count);
+    let mut sequence: Vec<(u32, u32)> = firsts
+        .iter()
+        .enumerate()
+        .map(|(k, &at)| {
+            let p = keyed[at as usize].1;
+            (order::round(&[p[0], p[1], p[2], 0.0], rounds), k as u32)
+        })
+        .collect();
+    sequence.sort_unstable();
+
+    let step = lattice.step();
+    let mut balls = Balls {
+        sites: Vec::with_capacity(count),
+        lattice,
+        touch_starts: Vec::with_capacity(count + 1),
+        touched: Vec::with_capacity(count * 4),
+        touches_frame: Vec::with_capacity(count),
+    };
+    balls.touch_starts.push(0);
+    let mut ball_of_cell = vec![NO_POLE; centres.len()];
+    let mut corners: Vec<u32> = Vec::new();
+    for (_, k) in sequence {
+        let from = firsts[k as usize] as usize;
+        let to = firsts
+            .get(k as usize + 1)
+            .map_or(keyed.len(), |&next| next as usize);
+        let id = balls.sites.len() as u32;
+        corners.clear();
+        for (_, _, c) in &keyed[from..to] {
+            ball_of_cell[*c as usize] = id;
+            corners.extend_from_slice(&delaunay.complex.cells[*c as usize]);
+        }
+        corners.sort_unstable();
+        corners.dedup();
+        let centre = keyed[from].1;
+        let nearest = corners
+            .iter()
+            .map(|&v| power_weight(centre, &delaunay.sites[v as usize]))
+            .fold(f64::INFINITY, f64::min);
+        let weight = (nearest / (step * step)).round();
+        balls
+            .sites
+            .push([centre[0] / step, centre[1] / step, centre[2] / step, weight]);
+        let real = corners.iter().filter(|&&v| !delaunay.is_frame(v));
+        balls.touched.extend(real);
+        balls.touch_starts.push(balls.touched.len() as u32);
+        balls
+            .touches_frame
+            .push(corners.iter().any(|&v| delaunay.is_frame(v)));
+    }
+    let of_sample = chosen
+        .iter()
+        .map(|pair| {
+            pair.map(|c| {
+                if c == NO_POLE {
+                    NO_POLE
+                } else {
+                    ball_of_cell[c as usize]
+                }
+            })
+        })
+        .collect();
+    (balls, of_sample)
+}
+
+/// The squared distance from a centre to a sample, in floats: exact to one
+/// part in 2^51, far below the noise of rounding the centre.
+fn power_weight(centre: Point, site: &Site) -> f64 {
+    let d = [
+        centre[0] - site[0],
+        centre[1] - site[1],
+        centre[2] - site[2],
+    ];
+    d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+}

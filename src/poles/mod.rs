@@ -1,0 +1,73 @@
+//! Poles and polar balls (section 5.1 of the paper), and which of them to
+//! drop (section 6).
+//!
+//! 1. Each Voronoi vertex is the circumcentre of a Delaunay cell, rounded to
+//!    the **ball lattice** ([`BallLattice`]): fact F1.
+//! 2. The first pole of a sample is its farthest Voronoi vertex, the second
+//!    the farthest on the other side; it can be missing.
+//! 3. A pole belongs to its cell, not to a sample: up to four samples share
+//!    it. Cells whose rounded centres coincide are one ball that touches the
+//!    samples of all of them: on a sphere every inner pole is the centre.
+//! 4. With a bound `lambda`, poles that fail the skinniness test are dropped
+//!    ([`skinny`]).
+//!
+//! Balls come numbered along a space-filling curve by their centres, so their
+//! ids depend on nothing but the set of samples.
+
+mod balls;
+mod select;
+mod skinny;
+
+pub use balls::{BallLattice, Balls};
+
+use crate::context::{Cancelled, Context, Stage};
+use crate::delaunay::{Delaunay, Samples};
+
+/// 'No such pole' among ball ids.
+pub const NO_POLE: u32 = u32::MAX;
+
+/// Which poles to drop (section 6).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoleOptions {
+    /// The skinniness bound; `None` keeps all poles.
+    pub lambda: Option<f64>,
+    /// Drop both poles of a sample that fails.
+    pub sharp: bool,
+}
+
+/// The polar balls and what they belong to.
+#[derive(Clone, Debug)]
+pub struct Poles {
+    /// The balls.
+    pub balls: Balls,
+    /// First and second pole of each sample, [`NO_POLE`] where there is none
+    /// or it was dropped.
+    pub of_sample: Vec<[u32; 2]>,
+    /// Samples that lost a pole to the skinniness test.
+    pub skinny_samples: u32,
+    /// Poles (sides of samples) dropped by it.
+    pub dropped: u32,
+}
+
+/// Finds the poles of all samples.
+pub fn poles(
+    samples: &Samples,
+    delaunay: &Delaunay,
+    options: &PoleOptions,
+    context: &Context,
+) -> Result<Poles, Cancelled> {
+    let total = samples.len() as u64;
+    context.advance(Stage::Poles, 0, total)?;
+    let lattice = BallLattice::DEFAULT;
+    let centres = select::centres(delaunay, lattice);
+    let chosen = select::select(delaunay, &centres, options);
+    context.advance(Stage::Poles, total / 2, total)?;
+    let (balls, of_sample) = balls::gather(delaunay, &centres, &chosen.cells, lattice);
+    context.advance(Stage::Poles, total, total)?;
+    Ok(Poles {
+        balls,
+        of_sample,
+        skinny_samples: chosen.skinny_samples,
+        dropped: chosen.dropped,
+    })
+}

@@ -1,0 +1,84 @@
+//! Counts, timings and options of one run: the content of `--stats`.
+
+use crate::label::Energy;
+use crate::options::Options;
+use crate::predicates::Counts;
+
+/// What one run did.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Stats {
+    /// Points given.
+    pub points: usize,
+    /// Distinct samples.
+    pub samples: usize,
+    /// Points merged into an equal one.
+    pub duplicates: usize,
+    /// Cells of the Delaunay triangulation, frame included.
+    pub delaunay_cells: usize,
+    /// Distinct polar balls chosen.
+    pub poles: usize,
+    /// Samples that failed the skinniness test.
+    pub skinny_samples: u32,
+    /// Poles dropped by it.
+    pub poles_dropped: u32,
+    /// Balls of the power diagram, after redundant ones were merged.
+    pub balls: usize,
+    /// Balls without a cell of their own.
+    pub hidden_balls: usize,
+    /// Balls labelled inner.
+    pub inner_balls: usize,
+    /// Balls that no evidence reached.
+    pub unreached_balls: u32,
+    /// Cells of the regular triangulation, sentinels included.
+    pub power_cells: usize,
+    /// Power faces between inner and outer cells, before clean-up.
+    pub power_faces: usize,
+    /// Polygons of the crust.
+    pub polygons: usize,
+    /// Faces written (triangles unless polygons were asked for).
+    pub faces: usize,
+    /// Vertices written.
+    pub vertices: usize,
+    /// Volume enclosed, in the cube of the input's unit.
+    pub volume: f64,
+    /// The evidence the labels go against.
+    pub label_energy: Energy,
+    /// Decisions of the Delaunay triangulation by stage.
+    pub delaunay_predicates: Counts,
+    /// Decisions of the regular triangulation by stage.
+    pub power_predicates: Counts,
+    /// Seconds by stage, in order.
+    pub seconds: Vec<(String, f64)>,
+    /// Every option used.
+    pub options: Options,
+}
+
+impl Stats {
+    /// Nothing counted yet.
+    pub fn new(options: &Options) -> Stats {
+        Stats {
+            points: 0,
+            samples: 0,
+            duplicates: 0,
+            delaunay_cells: 0,
+            poles: 0,
+            skinny_samples: 0,
+            poles_dropped: 0,
+            balls: 0,
+            hidden_balls: 0,
+            inner_balls: 0,
+            unreached_balls: 0,
+            power_cells: 0,
+            power_faces: 0,
+            polygons: 0,
+            faces: 0,
+            vertices: 0,
+            volume: 0.0,
+            label_energy: Energy::default(),
+            delaunay_predicates: Counts::default(),
+            power_predicates: Counts::default(),
+            seconds: Vec::new(),
+            options: options.clone(),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Incremental construction: walk to the site, replace what conflicts.
+
+use super::cavity::Workspace;
+use super::complex::{unpack, Complex, NONE};
+use super::{frame, Conflict};
+use crate::context::{Cancelled, Context, Stage};
+use crate::predicates::{Counts, Sign};
+
+/// Sites inserted between two reports of progress.
+const REPORT: u32 = 4096;
+
+/// A finished triangulation.
+#[derive(Clone, Debug, Default)]
+pub struct Triangulation {
+    /// Its cells; vertices are site ids, the frame's among them.
+    pub complex: Complex,
+    /// Sites without cells, ascending.
+    pub hidden: Vec<u32>,
+    /// How its decisions were taken.
+    pub counts: Counts,
+}
+
+/// Triangulates the sites `0..count` of `test` inside the frame of the sites
+/// `count..count + 8`. Sites are inserted in the order of their ids: number
+/// them along a space-filling curve ([`super::order`]).
+pub fn triangulate<C: Conflict>(
+    test: &C,
+    count: u32,
+    stage: Stage,
+    context: &Context,
+) -> Result<Triangulation, Cancelled> {
+    let mut counts = Counts::default();
+    let start = frame::frame(test, count, &mut counts);
+    let mut work = Workspace::new(count as usize + 8, start.cells, start.neighbours);
+    let mut hint = 0;
+    for p in 0..count {
+        if p % REPORT == 0 {
+            context.advance(stage, p as u64, count as u64)?;
+        }
+        let cell = walk(test, &work, hint, p, &mut counts);
+        hint = work.insert(test, p, cell, &mut counts).unwrap_or(cell);
+    }
+    context.advance(stage, count as u64, count as u64)?;
+    let hidden = std::mem::take(&mut work.hidden);
+    let complex = compact(work);
+    let mut hidden = hidden;
+    hidden.sort_unstable();
+    Ok(Triangulation {
+        complex,
+        hidden,
+        counts,
+    })
+}
+
+/// The visibility walk: cross any facet that separates the site from the
+/// cell. In a regular triangulation, with exact signs, it cannot go round in
+/// circles (Edelsbrunner 1990).
+#[inline]
+fn walk<C: Conflict>(test: &C, work: &Workspace, hint: u32, p: u32, counts: &mut Counts) -> u32 {
+    let mut at = hint;
+    let mut from = NONE;
+    'cell: loop {
+        let cell = work.cells[at as usize];
+        let behind = work.neighbours[at as usize];
+        for i in 0..4 {
+            let next = behind[i];
+            if next == NONE || next >> 2 == from {
+                continue;
+            }
+            let mut replaced = cell;
+            replaced[i] = p;
+            if test.orient(replaced, counts) == Sign::Negative {
+                from = at;
+                at = unpack(next).0;
+                continue 'cell;
+            }
+        }
+        return at;
+    }
+}
+
+/// Drops unused cell slots.
+fn compact(work: Workspace) -> Complex {
+    let mut dead = vec![false; work.cells.len()];
+    for &c in work.free_slots() {
+        dead[c as usize] = true;
+    }
+    let mut renumbered = vec![NONE; work.cells.len()];
+    let mut live = 0;
+    for (c, &gone) in dead.iter().enumerate() {
+        if !gone {
+            renumbered[c] = live;
+            live += 1;
+        }
+    }
+    let Workspace {
+        mut cells,
+        mut neighbours,
+        ..
+    } = work;
+    for c in 0..cells.len() {
+        if dead[c] {
+            continue;
+        }
+        let to = renumbered[c] as usize;
+        cells[to] = cells[c];
+        neighbours[to] = neighbours[c].map(|packed| {
+            if packed == NONE {
+                NONE
+            } else {
+                renumbered[(packed >> 2) as usize] << 2 | (packed & 3)
+            }
+        });
+    }
+    cells.truncate(live as usize);
+    neighbours.truncate(live as usize);
+    cells.shrink_to_fit();
+    neighbours.shrink_to_fit();
+    Complex { cells, neighbours }
+}
