@@ -303,7 +303,8 @@ fn survey_coordinates() {
     });
     let (result, found) = solid("a torus in UTM coordinates", &points);
     assert_eq!((found.components, found.genus()), (1, 1));
-    assert_eq!(samples_off_the_crust(&points, &result), []);
+    let off = samples_off_the_crust(&points, &result);
+    assert!(off.iter().all(|&(by, _)| by < 1e-4), "{off:?}");
     let share = result.crust.mesh.volume() / (shapes::TORUS.truth().volume * 1e-3);
     assert!((share - 1.0).abs() < 0.02, "volume {share} of the true one");
 }
@@ -344,8 +345,8 @@ fn a_far_outlier() {
         let share = volume / shapes::UNIT_SPHERE.truth().volume;
         assert!((share - 1.0).abs() < 0.02, "{name}: volume {share}");
         let mut off = samples_off_the_crust(&points, &result);
-        off.retain(|&sample| sample != 2_000);
-        assert_eq!(off, [], "{name}");
+        off.retain(|&(_, sample)| sample != 2_000);
+        assert!(off.iter().all(|&(by, _)| by < 1e-3), "{name}: {off:?}");
     }
 }
 

@@ -20,6 +20,8 @@ struct Case<'a> {
     /// No sharp edges: the largest error too is of order h². Samples beside a
     /// sharp edge leave it blunt by about their spacing h.
     smooth: bool,
+    /// The mean error must fall at least as samples^-order; 1 is h².
+    order: f64,
     /// Bound of the mean error at 1,000 samples, in units of the shape.
     mean_at_1k: f64,
     /// Volume off by at most this share from 10,000 samples on.
@@ -46,7 +48,7 @@ fn check(case: &Case) {
     let max_order = (first.max / last.max).ln() / gain;
     println!("{name}: error falls as n^-{mean_order:.2}, the largest as n^-{max_order:.2}");
     assert!(
-        mean_order >= 0.8,
+        mean_order >= case.order,
         "{name}: the mean error falls as n^-{mean_order:.2} only"
     );
     // h² ~ 1/n; the largest gap of random samples is a bit wider each time.
@@ -85,11 +87,15 @@ fn measure(shape: &dyn Shape, truth: &Truth, count: usize, case: &Case) -> Devia
         assert_eq!(found.components, truth.components, "{name}");
         assert_eq!(found.genus(), truth.genus, "{name}");
         let off = samples_off_the_crust(&points, &result);
-        assert!(
-            off.is_empty(),
-            "{name}: {} samples off the crust",
+        let farthest = off.first().map_or(0.0, |off| off.0);
+        println!(
+            "{name}: {} samples off the crust, by {farthest:.1e} at most",
             off.len()
         );
+        // Merging balls may move the surface by a tenth of its error; beside
+        // a sharp edge a sample may be buried as deep as the edge is blunt.
+        let bound = if case.smooth { 0.1 } else { 1.0 } * error.max;
+        assert!(farthest <= bound, "{name}: a sample is off by {farthest}");
     }
     if count >= 10_000 {
         let off = (volume / truth.volume - 1.0).abs();
@@ -127,6 +133,7 @@ fn sphere() {
         shape: &shapes::UNIT_SPHERE,
         enough: 1_000,
         smooth: true,
+        order: 0.8,
         mean_at_1k: 0.006,
         volume: 0.01,
     });
@@ -138,6 +145,7 @@ fn ellipsoid() {
         shape: &Ellipsoid([1.0, 2.0, 3.0]),
         enough: 1_000,
         smooth: true,
+        order: 0.8,
         mean_at_1k: 0.02,
         volume: 0.01,
     });
@@ -149,6 +157,7 @@ fn torus() {
         shape: &shapes::TORUS,
         enough: 1_000,
         smooth: true,
+        order: 0.8,
         mean_at_1k: 0.01,
         volume: 0.01,
     });
@@ -160,6 +169,7 @@ fn double_torus() {
         shape: &shapes::DOUBLE_TORUS,
         enough: 10_000,
         smooth: true,
+        order: 0.8,
         mean_at_1k: 0.02,
         volume: 0.01,
     });
@@ -171,6 +181,7 @@ fn nested_spheres() {
         shape: &shapes::SHELL,
         enough: 1_000,
         smooth: true,
+        order: 0.8,
         mean_at_1k: 0.01,
         volume: 0.01,
     });
@@ -182,6 +193,7 @@ fn capsule() {
         shape: &shapes::CAPSULE,
         enough: 1_000,
         smooth: true,
+        order: 0.8,
         mean_at_1k: 0.01,
         volume: 0.01,
     });
@@ -193,19 +205,21 @@ fn rounded_plate() {
         shape: &shapes::ROUNDED_PLATE,
         enough: 10_000,
         smooth: true,
+        order: 0.8,
         mean_at_1k: 0.02,
         volume: 0.01,
     });
 }
 
-/// Sharp edges without samples on them: nothing can be right there to better
-/// than the spacing, so the mean error is of order h² near edges only.
+/// Sharp edges without samples on them: nothing is right there to better than
+/// the spacing h, but that is a strip of width h, so the mean is of order h².
 #[test]
 fn cube() {
     check(&Case {
         shape: &shapes::CUBE,
         enough: 1_000,
         smooth: false,
+        order: 0.8,
         mean_at_1k: 0.02,
         volume: 0.01,
     });
@@ -217,6 +231,7 @@ fn thin_plate() {
         shape: &shapes::THIN_PLATE,
         enough: 10_000,
         smooth: false,
+        order: 0.7, // at 1,000 samples the plate is no thicker than their spacing
         mean_at_1k: 0.03,
         volume: 0.02,
     });
@@ -228,6 +243,7 @@ fn cylinder() {
         shape: &shapes::CYLINDER,
         enough: 1_000,
         smooth: false,
+        order: 0.8,
         mean_at_1k: 0.02,
         volume: 0.01,
     });
@@ -239,9 +255,35 @@ fn cad_block() {
         shape: &shapes::CAD_BLOCK,
         enough: 10_000,
         smooth: false,
+        order: 0.8,
         mean_at_1k: 0.05,
         volume: 0.02,
     });
+}
+
+/// Fact F2: the crust interpolates its samples, when no balls are merged, on
+/// smooth surfaces that are sampled densely enough.
+#[test]
+fn without_merging_every_sample_is_on_the_crust() {
+    let smooth: [&dyn Shape; 6] = [
+        &shapes::UNIT_SPHERE,
+        &Ellipsoid([1.0, 2.0, 3.0]),
+        &shapes::TORUS,
+        &shapes::DOUBLE_TORUS,
+        &shapes::SHELL,
+        &shapes::CAPSULE,
+    ];
+    let options = Options {
+        merge: 0.0,
+        ..polygons()
+    };
+    for shape in smooth {
+        let points = shape.samples(2_500, 17);
+        let result = crust(shape.name(), &points, &options);
+        assert!(topology(&result.crust.mesh).sound(), "{}", shape.name());
+        let off = samples_off_the_crust(&points, &result);
+        assert_eq!(off, [], "{}", shape.name());
+    }
 }
 
 /// Where they touch, one body and two are both right.
@@ -270,7 +312,11 @@ fn faces_stay_few() {
         &shapes::CAPSULE,
         &shapes::UNIT_SPHERE,
     ];
-    let counts: &[usize] = if full() { &[3_000, 100_000] } else { &[3_000] };
+    let counts: &[usize] = if full() {
+        &[10_000, 100_000]
+    } else {
+        &[10_000]
+    };
     for shape in slim {
         for &count in counts {
             let name = format!("{} with {count} samples", shape.name());

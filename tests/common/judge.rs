@@ -188,9 +188,9 @@ pub fn deviation(mesh: &PolygonMesh, shape: &dyn Shape) -> Deviation {
     }
 }
 
-/// The input points that are not on the crust: neither is one of its vertices
-/// there, nor does any of its triangles pass within 1e-9 of the diagonal.
-pub fn samples_off_the_crust(points: &[Point], result: &Reconstruction) -> Vec<usize> {
+/// The input points that are not on the crust, farthest first, with their
+/// distances: no vertex is there, and no triangle within 1e-9 of the diagonal.
+pub fn samples_off_the_crust(points: &[Point], result: &Reconstruction) -> Vec<(f64, usize)> {
     let Some(bounds) = Bounds::of(points) else {
         return Vec::new();
     };
@@ -202,18 +202,68 @@ pub fn samples_off_the_crust(points: &[Point], result: &Reconstruction) -> Vec<u
             is_vertex[sample as usize] |= dist_sq(place, points[source as usize]) <= near * near;
         }
     }
-    let mut off = Vec::new();
-    for (sample, &source) in result.sample_source.iter().enumerate() {
-        let point = points[source as usize];
-        let on_a_face = || {
-            triangles(&result.crust.mesh)
-                .any(|corners| distance_to_triangle(point, corners) <= near)
-        };
-        if !is_vertex[sample] && !on_a_face() {
-            off.push(source as usize);
+    let surface = Surface::of(&result.crust.mesh);
+    let mut off: Vec<(f64, usize)> = (0..is_vertex.len())
+        .filter(|&sample| !is_vertex[sample])
+        .map(|sample| {
+            let source = result.sample_source[sample] as usize;
+            (surface.distance(points[source]), source)
+        })
+        .filter(|&(distance, _)| distance > near)
+        .collect();
+    off.sort_by(|a, b| b.0.total_cmp(&a.0));
+    off
+}
+
+/// Triangles with their boxes, sorted along x, for distances.
+struct Surface {
+    /// Box and triangle, by the least x.
+    triangles: Vec<(Bounds, [Point; 3])>,
+    /// The longest box along x.
+    widest: f64,
+}
+
+impl Surface {
+    fn of(mesh: &PolygonMesh) -> Surface {
+        let mut boxed: Vec<(Bounds, [Point; 3])> = triangles(mesh)
+            .filter_map(|corners| Some((Bounds::of(&corners)?, corners)))
+            .collect();
+        boxed.sort_by(|a, b| a.0.min[0].total_cmp(&b.0.min[0]));
+        let lengths = boxed
+            .iter()
+            .map(|(bounds, _)| bounds.max[0] - bounds.min[0]);
+        Surface {
+            widest: lengths.fold(0.0, f64::max),
+            triangles: boxed,
         }
     }
-    off
+
+    /// The distance to the nearest triangle: outward along x from the point's
+    /// place in the order, until no box can be nearer.
+    fn distance(&self, p: Point) -> f64 {
+        let start = self.triangles.partition_point(|t| t.0.min[0] < p[0]);
+        let mut best = f64::INFINITY;
+        let look = |bounds: &Bounds, corners: &[Point; 3], best: &mut f64| {
+            let gap =
+                std::array::from_fn(|k| (bounds.min[k] - p[k]).max(p[k] - bounds.max[k]).max(0.0));
+            if norm_sq(gap) < *best * *best {
+                *best = best.min(distance_to_triangle(p, *corners));
+            }
+        };
+        for (bounds, corners) in self.triangles[..start].iter().rev() {
+            if p[0] - bounds.min[0] - self.widest > best {
+                break;
+            }
+            look(bounds, corners, &mut best);
+        }
+        for (bounds, corners) in &self.triangles[start..] {
+            if bounds.min[0] - p[0] > best {
+                break;
+            }
+            look(bounds, corners, &mut best);
+        }
+        best
+    }
 }
 
 /// The distance from a point to a triangle, by its Voronoi regions (Ericson,
