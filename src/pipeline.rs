@@ -12,7 +12,9 @@ use crate::poles::{poles, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::merge_redundant;
 use crate::stats::Stats;
-use crate::surface::{clean, power_shape, raw_crust, triangulate, Crust, Placement, PowerShape};
+use crate::surface::{
+    clean, power_shape, raw_crust, triangulate, CleanOptions, Crust, Placement, PowerShape,
+};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,7 +156,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     }
     stats.power_faces = raw.balls.len();
     context.advance(Stage::Crust, 1, 3)?;
-    let mut crust = clean(raw);
+    let mut crust = clean(raw, &CleanOptions::default());
     stats.polygons = crust.mesh.face_count();
     context.advance(Stage::Crust, 2, 3)?;
     if options.faces == Faces::Triangles {

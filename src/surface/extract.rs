@@ -7,10 +7,12 @@
 //! other crust face it lies on gives the twin. Everything is local: no edge
 //! table, no hashing.
 
+use rayon::prelude::*;
+
 use super::raw::{RawCrust, NONE};
 use crate::geom::{Point, Side};
 use crate::power::PowerDiagram;
-use crate::tetra::{facet_of, unpack};
+use crate::tetra::unpack;
 
 /// Where the power vertices go and which samples they are.
 pub struct Placement<'a> {
@@ -34,122 +36,149 @@ const EDGES: [[usize; 4]; 6] = [
     [2, 3, 0, 1],
 ];
 
-/// Extracts the crust. `side(v)` must call every sentinel outer.
+/// Corners of a cell by the number of its inner balls.
+const CORNERS: [u32; 5] = [0, 3, 4, 3, 0];
+
+/// Extracts the crust. Sentinels count as outer.
 pub fn raw_crust(power: &PowerDiagram, sides: &[Side], place: &Placement) -> RawCrust {
-    let inner = |v: u32| !power.is_sentinel(v) && sides[v as usize] == Side::Inner;
     let cells = &power.complex.cells;
-
-    // Corners are numbered cell after cell.
-    let mut first = vec![NONE; cells.len()];
-    let mut corners: Vec<(u32, u8)> = Vec::new();
+    // Which vertices of each cell are inner, as bits.
+    let inside: Vec<u8> = cells
+        .par_iter()
+        .map(|cell| {
+            (0..4).fold(0, |bits, k| {
+                let v = cell[k];
+                let inner = !power.is_sentinel(v) && sides[v as usize] == Side::Inner;
+                bits | (inner as u8) << k
+            })
+        })
+        .collect();
+    // Power vertices of the crust and their corners, cell after cell.
+    let mut vertex = vec![NONE; cells.len()];
+    let mut first = Vec::new();
     let mut mixed = Vec::new();
-    for (c, cell) in cells.iter().enumerate() {
-        let inside = cell.map(inner);
-        let number = inside.iter().filter(|&&b| b).count();
-        if number == 0 || number == 4 {
-            continue;
-        }
-        first[c] = corners.len() as u32;
-        mixed.push(c as u32);
-        for (e, [i, j, _, _]) in EDGES.iter().enumerate() {
-            if inside[*i] != inside[*j] {
-                corners.push((c as u32, e as u8));
-            }
+    let mut count = 0;
+    for (c, bits) in inside.iter().enumerate() {
+        let corners = CORNERS[bits.count_ones() as usize];
+        if corners > 0 {
+            vertex[c] = mixed.len() as u32;
+            mixed.push(c as u32);
+            first.push(count);
+            count += corners;
         }
     }
-    // The corner of a cell at the edge between two of its vertices.
-    let corner_at = |c: u32, a: u32, b: u32| -> u32 {
-        let cell = &cells[c as usize];
-        let inside = cell.map(inner);
-        let mut id = first[c as usize];
-        for [i, j, _, _] in EDGES {
-            if inside[i] == inside[j] {
-                continue;
-            }
-            if (cell[i] == a && cell[j] == b) || (cell[i] == b && cell[j] == a) {
-                return id;
-            }
-            id += 1;
-        }
-        NONE
+    let view = View {
+        power,
+        inside: &inside,
+        vertex: &vertex,
+        first: &first,
     };
-    let step = |corner: u32| -> Step {
-        let (c, e) = corners[corner as usize];
-        let cell = &cells[c as usize];
-        let [i, j, k, l] = EDGES[e as usize];
-        // Outward is from the inner to the outer ball: counterclockwise
-        // around it when that is i -> j, clockwise otherwise.
-        let (from, to) = if inner(cell[i]) { (k, l) } else { (l, k) };
-        let (inner_ball, outer_ball) = if inner(cell[i]) {
-            (cell[i], cell[j])
-        } else {
-            (cell[j], cell[i])
-        };
-        // Leave the cell through the facet opposite `from`.
-        let (next, _) = unpack(power.complex.neighbours[c as usize][from]);
-        let third = cell[to];
-        let twin = if inner(third) {
-            corner_at(next, third, outer_ball)
-        } else {
-            corner_at(next, inner_ball, third)
-        };
-        Step {
-            next: corner_at(next, inner_ball, outer_ball),
-            twin,
-            balls: [inner_ball, outer_ball],
-        }
-    };
-    let _ = facet_of;
+    let steps: Vec<Step> = mixed.par_iter().flat_map_iter(|&c| view.steps(c)).collect();
 
-    let mut raw = RawCrust::default();
-    let mut place_of = vec![NONE; corners.len()];
-    let mut twins_by_corner = Vec::with_capacity(corners.len());
-    raw.starts.push(0);
-    let mut vertex_of_cell = vec![NONE; cells.len()];
-    for (v, &c) in mixed.iter().enumerate() {
-        vertex_of_cell[c as usize] = v as u32;
-    }
-    for start in 0..corners.len() as u32 {
+    // Following the corners round each face.
+    let mut raw = RawCrust {
+        corners: Vec::with_capacity(steps.len()),
+        twins: Vec::with_capacity(steps.len()),
+        starts: vec![0],
+        ..RawCrust::default()
+    };
+    let mut place_of = vec![NONE; steps.len()];
+    for start in 0..steps.len() as u32 {
         if place_of[start as usize] != NONE {
             continue;
         }
+        raw.balls.push(steps[start as usize].balls);
         let mut at = start;
-        loop {
-            let Step { next, twin, balls } = step(at);
-            if at == start {
-                raw.balls.push(balls);
-            }
+        while place_of[at as usize] == NONE {
+            let step = &steps[at as usize];
             place_of[at as usize] = raw.corners.len() as u32;
-            raw.corners
-                .push(vertex_of_cell[corners[at as usize].0 as usize]);
-            twins_by_corner.push(twin);
-            at = next;
-            if at == start {
-                break;
-            }
+            raw.corners.push(step.vertex);
+            raw.twins.push(step.twin);
+            at = step.next;
         }
         raw.starts.push(raw.corners.len() as u32);
     }
-    raw.twins = twins_by_corner
-        .into_iter()
-        .map(|t| place_of[t as usize])
+    drop(steps);
+    raw.twins
+        .par_iter_mut()
+        .for_each(|t| *t = place_of[*t as usize]);
+    let placed: Vec<(Point, u32)> = mixed
+        .par_iter()
+        .map(|&c| place_vertex(power, cells[c as usize], place))
         .collect();
-    let placed: Vec<(Point, u32)> = {
-        use rayon::prelude::*;
-        mixed
-            .par_iter()
-            .map(|&c| place_vertex(power, cells[c as usize], place))
-            .collect()
-    };
     raw.positions = placed.iter().map(|p| p.0).collect();
     raw.samples = placed.iter().map(|p| p.1).collect();
     raw
 }
 
+/// A corner with its successor on the face and the twin of the half-edge
+/// between them, all as corner numbers.
 struct Step {
+    vertex: u32,
     next: u32,
     twin: u32,
     balls: [u32; 2],
+}
+
+/// What finding corners needs.
+struct View<'a> {
+    power: &'a PowerDiagram,
+    inside: &'a [u8],
+    vertex: &'a [u32],
+    first: &'a [u32],
+}
+
+impl View<'_> {
+    /// The corners of a cell.
+    fn steps(&self, c: u32) -> impl Iterator<Item = Step> + '_ {
+        let bits = self.inside[c as usize];
+        let inner = move |k: usize| bits >> k & 1 == 1;
+        EDGES
+            .iter()
+            .filter(move |e| inner(e[0]) != inner(e[1]))
+            .map(move |&[i, j, k, l]| {
+                let cell = &self.power.complex.cells[c as usize];
+                // Outward is from the inner to the outer ball: counterclockwise
+                // about it is k -> l when that is i -> j, else l -> k. Leave
+                // the cell through the facet opposite the first of them.
+                let (from, to, balls) = if inner(i) {
+                    (k, l, [cell[i], cell[j]])
+                } else {
+                    (l, k, [cell[j], cell[i]])
+                };
+                let (next, _) = unpack(self.power.complex.neighbours[c as usize][from]);
+                // The facet's other crust face, by the third ball's label.
+                let third = cell[to];
+                let other = if inner(to) {
+                    [third, balls[1]]
+                } else {
+                    [balls[0], third]
+                };
+                Step {
+                    vertex: self.vertex[c as usize],
+                    next: self.corner_at(next, balls),
+                    twin: self.corner_at(next, other),
+                    balls,
+                }
+            })
+    }
+
+    /// The corner of a cell at the edge between two of its vertices.
+    fn corner_at(&self, c: u32, [a, b]: [u32; 2]) -> u32 {
+        let cell = &self.power.complex.cells[c as usize];
+        let bits = self.inside[c as usize];
+        let mut id = self.first[self.vertex[c as usize] as usize];
+        for [i, j, _, _] in EDGES {
+            if (bits >> i ^ bits >> j) & 1 == 0 {
+                continue;
+            }
+            if (cell[i] == a && cell[j] == b) || (cell[i] == b && cell[j] == a) {
+                break;
+            }
+            id += 1;
+        }
+        id
+    }
 }
 
 /// Fact F2: a power vertex whose four balls share a sample is that sample.

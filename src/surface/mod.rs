@@ -1,11 +1,23 @@
 //! From labelled power cells to the surface (section 5 of the paper, steps 5
 //! and 6): the crust between inner and outer cells, and the power shape.
 
+#[cfg(test)]
+mod check;
 mod clean;
-pub mod extract;
+mod contract;
+mod extract;
+mod flat;
+mod halfedges;
+mod pinch;
+mod polygon;
 pub mod raw;
 mod shape;
-pub use clean::{clean, triangulate};
+mod short;
+#[cfg(test)]
+mod tests;
+mod triangulate;
+pub use clean::{clean, CleanOptions};
 pub use extract::{raw_crust, Placement};
 pub use raw::{Crust, RawCrust, NONE};
 pub use shape::{power_shape, PowerShape};
+pub use triangulate::triangulate;

@@ -1,0 +1,226 @@
+//! Where the solid has no thickness: opposite faces that coincide, edges that
+//! coincide, and vertices of several fans.
+//!
+//! **Opposite faces.** Two faces with the same corners in opposite order hold
+//! nothing between them. Both go, and what was glued to the one is glued to
+//! the other. A component of two such faces vanishes with them.
+//!
+//! **Double edges.** If two edges join the same two vertices, a mesh of
+//! indices has one edge with four faces. The two form a closed curve that
+//! goes out and back and encloses nothing, so cutting the surface along it and
+//! sewing up both cuts leaves the solid as it is. On half-edges that is to
+//! exchange the two twins, which splits the fan at *both* ends: afterwards
+//! either end has a vertex for each of the edges. Fans only ever get smaller
+//! here, so one pass over each set of equal edges, every pair tested, ends and
+//! leaves none. (A midpoint on one of the edges would do as well, but keeps a
+//! neck of zero width and adds vertices.)
+//!
+//! **Fans.** The vertices of several fans at one place stay where they are
+//! unless a gap is asked for, see [`separate`].
+
+use super::contract::Places;
+use super::halfedges::HalfEdges;
+use super::raw::NONE;
+use crate::geom::vec3::{add, norm, scale, sub};
+use crate::geom::Point;
+
+/// Removes pairs of faces with the same corners in opposite order.
+pub(crate) fn remove_opposite_faces(surface: &mut HalfEdges) -> usize {
+    let mut keys: Vec<(u64, u32)> = Vec::new();
+    for first in surface.faces() {
+        let (mut at, mut key, mut lowest) = (first, 0u64, first);
+        loop {
+            key = key.wrapping_add(mix(surface.tail(at)));
+            if surface.tail(at) < surface.tail(lowest) {
+                lowest = at;
+            }
+            at = surface.next(at);
+            if at == first {
+                break;
+            }
+        }
+        keys.push((key, lowest));
+    }
+    keys.sort_unstable();
+    let mut removed = 0;
+    let mut start = 0;
+    while start < keys.len() {
+        let mut end = start + 1;
+        while end < keys.len() && keys[end].0 == keys[start].0 {
+            end += 1;
+        }
+        for i in start..end {
+            for j in i + 1..end {
+                let (a, b) = (keys[i].1, keys[j].1);
+                if surface.alive(a) && surface.alive(b) && cancel(surface, a, b) {
+                    removed += 1;
+                }
+            }
+        }
+        start = end;
+    }
+    removed
+}
+
+fn mix(place: u32) -> u64 {
+    let h = (u64::from(place) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let h = (h ^ (h >> 32)).wrapping_mul(0xD6E8_FEB8_6659_FD93);
+    h ^ (h >> 29)
+}
+
+/// The half-edges of a face, from `first` on.
+fn walk(surface: &HalfEdges, first: u32) -> Vec<u32> {
+    let mut face = vec![first];
+    let mut at = surface.next(first);
+    while at != first {
+        face.push(at);
+        at = surface.next(at);
+    }
+    face
+}
+
+/// Removes the faces of `a` and `b`, which start at their lowest places, if
+/// they have the same corners in opposite order.
+fn cancel(surface: &mut HalfEdges, a: u32, b: u32) -> bool {
+    let (p, mut q) = (walk(surface, a), walk(surface, b));
+    // Edge k of the first runs from corner k to k + 1; the other's edge from
+    // corner k + 1 to k is the k-th from its end.
+    q.reverse();
+    let pairs = || p.iter().zip(&q);
+    let fits = |(&h, &g): (&u32, &u32)| {
+        surface.tail(h) == surface.head(g) && surface.head(h) == surface.tail(g)
+    };
+    if p.len() != q.len() || !pairs().all(fits) {
+        return false;
+    }
+    for (&h, &g) in pairs() {
+        surface.zip(h, g);
+    }
+    true
+}
+
+/// Makes every edge the only one between its vertices.
+pub(crate) fn split_double_edges(surface: &mut HalfEdges) -> usize {
+    let (fan, count) = surface.fans();
+    let mut doubles: Vec<(u64, u32)> = Vec::new();
+    let mut first_to = vec![NONE; count as usize];
+    let mut done = vec![false; count as usize];
+    for start in 0..surface.len() as u32 {
+        if !surface.alive(start) || done[fan[start as usize] as usize] {
+            continue;
+        }
+        let from = fan[start as usize];
+        done[from as usize] = true;
+        let end = |h: u32| fan[surface.twin(h) as usize];
+        let each = |visit: &mut dyn FnMut(u32)| {
+            let mut h = start;
+            loop {
+                visit(h);
+                h = surface.around(h);
+                if h == start {
+                    break;
+                }
+            }
+        };
+        each(&mut |h| {
+            let to = end(h);
+            if from < to {
+                let key = u64::from(from) << 32 | u64::from(to);
+                let first = &mut first_to[to as usize];
+                if *first == NONE {
+                    *first = h;
+                } else {
+                    doubles.push((key, *first));
+                    doubles.push((key, h));
+                }
+            }
+        });
+        each(&mut |h| first_to[end(h) as usize] = NONE);
+    }
+    doubles.sort_unstable();
+    doubles.dedup();
+    let mut split = 0;
+    let mut start = 0;
+    while start < doubles.len() {
+        let mut end = start + 1;
+        while end < doubles.len() && doubles[end].0 == doubles[start].0 {
+            end += 1;
+        }
+        for i in start..end {
+            for j in i + 1..end {
+                let (a, b) = (doubles[i].1, doubles[j].1);
+                let (s, t) = (surface.twin(a), surface.twin(b));
+                if surface.same_fan(a, b) && surface.same_fan(s, t) {
+                    surface.pair(a, t);
+                    surface.pair(b, s);
+                    split += 1;
+                }
+            }
+        }
+        start = end;
+    }
+    split
+}
+
+/// The position of each of `count` vertices, `fan` saying at which of them
+/// each half-edge starts.
+///
+/// With a positive `gap`, all vertices but one at each place of several fans
+/// move by that much into their own fan, away from the other sheets. The one
+/// that stays, exactly at the sample if there is one, has the widest fan.
+pub(crate) fn separate(
+    surface: &HalfEdges,
+    places: &Places,
+    fan: &[u32],
+    count: u32,
+    gap: f64,
+) -> Vec<Point> {
+    let mut first_of = vec![NONE; count as usize];
+    let mut fans_at = vec![0u32; places.positions.len()];
+    for h in (0..surface.len() as u32).filter(|&h| surface.alive(h)) {
+        let first = &mut first_of[fan[h as usize] as usize];
+        if *first == NONE {
+            *first = h;
+            fans_at[surface.tail(h) as usize] += 1;
+        }
+    }
+    let at = |vertex: usize| surface.tail(first_of[vertex]);
+    let mut positions: Vec<Point> = (0..count as usize).map(|v| places.at(at(v))).collect();
+    if gap <= 0.0 {
+        return positions;
+    }
+    // Place, width, vertex, mean direction of its edges.
+    let mut split: Vec<(u32, f64, u32, Point)> = Vec::new();
+    for vertex in 0..count as usize {
+        if fans_at[at(vertex) as usize] > 1 {
+            let mean = mean_direction(surface, places, first_of[vertex]);
+            split.push((at(vertex), norm(mean), vertex as u32, mean));
+        }
+    }
+    split.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+    for pair in split.windows(2) {
+        let (place, length, vertex, mean) = pair[1];
+        if pair[0].0 == place && length > 0.0 {
+            positions[vertex as usize] = add(places.at(place), scale(mean, gap / length));
+        }
+    }
+    positions
+}
+
+/// The mean of the directions of all edges that start where `first` does:
+/// the axis of the fan, short if the fan is wide.
+fn mean_direction(surface: &HalfEdges, places: &Places, first: u32) -> Point {
+    let (mut sum, mut edges, mut h) = ([0.0; 3], 0.0, first);
+    loop {
+        let step = sub(places.at(surface.head(h)), places.at(surface.tail(h)));
+        let length = norm(step);
+        if length > 0.0 {
+            sum = add(sum, scale(step, 1.0 / length));
+        }
+        edges += 1.0;
+        h = surface.around(h);
+        if h == first {
+            return scale(sum, 1.0 / edges);
+        }
+    }
+}
