@@ -113,7 +113,7 @@ pub(super) fn crossings(
                 marks[face as usize].fetch_or(1 << k, Ordering::Relaxed);
             }
             part.found[k].push((f.min(g), f.max(g)));
-            if part.found[k].len() > 2 * max + 64 {
+            if part.found[k].len() > max.saturating_mul(2).saturating_add(64) {
                 keep(&mut part.found[k], max);
             }
         },
@@ -149,13 +149,9 @@ fn judge(
 ) -> Option<Kind> {
     let mut twins: Twins = [None; 3];
     let mut shared = 0;
-    for i in 0..3 {
-        for j in 0..3 {
-            if a[i] == b[j] {
-                twins[i] = Some(j as u8);
-                shared += 1;
-            }
-        }
+    for (twin, v) in twins.iter_mut().zip(a) {
+        *twin = b.iter().position(|&w| w == v).map(|j| j as u8);
+        shared += twin.is_some() as usize;
     }
     let (pa, pb) = (place(&frame.points, a), place(&frame.points, b));
     match contact(frame.kernel, &pa, &pb, &twins) {
