@@ -22,6 +22,18 @@ pub fn read_cloud(bytes: &[u8], options: &ReadOptions) -> Result<Cloud, ReadErro
     if columns < 3 {
         return Err(unsupported(format!("an array of shape {:?}", header.shape)));
     }
+    if columns > columns::MOST as u64 {
+        return Err(unsupported(format!(
+            "an array of {columns} columns (the limit is {})",
+            columns::MOST
+        )));
+    }
+    if rows == 0 {
+        return Err(ReadError::Nothing {
+            what: "points",
+            format: "NPY",
+        });
+    }
     check_count("points", rows)?;
     let record = columns.saturating_mul(header.size as u64);
     let found = data.len() as u64 / record;

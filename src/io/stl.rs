@@ -9,7 +9,7 @@ use super::cloud::{Cloud, Parts, ReadOptions};
 use super::error::{Place, ReadError, WriteError};
 use super::format::CloudFormat;
 use super::scan::{self, Stream};
-use super::sink::check_finite;
+use super::sink::{check_count, check_finite};
 use crate::geom::{vec3, Point};
 use crate::mesh::PolygonMesh;
 use std::io::Write;
@@ -156,6 +156,7 @@ fn read_binary(bytes: &[u8], out: &mut Contents) -> Result<(), ReadError> {
             found,
         });
     }
+    check_count("triangle corners", count * 3)?;
     let beyond = bytes.len() as u64 - HEADER as u64 - count * RECORD as u64;
     if beyond >= RECORD as u64 {
         return Err(ReadError::Malformed {

@@ -77,11 +77,19 @@ impl<'a> Body<'a> {
         {
             return Ok(());
         }
-        let lines = || Lines::new(self.bytes).filter(|(_, l)| !l.trim_ascii().is_empty());
-        Err(truncated(
-            element,
-            found.unwrap_or_else(|| lines().count() as u64),
-        ))
+        if let Some(found) = found {
+            return Err(truncated(element, found));
+        }
+        let lines = Lines::after(self.bytes, self.lines);
+        let mut found = 0;
+        for (number, line) in lines.filter(|(_, l)| !l.trim_ascii().is_empty()) {
+            let words = Words::new(line).count();
+            if words < element.properties.len() {
+                return Err(too_few(number, words, element));
+            }
+            found += 1;
+        }
+        Err(truncated(element, found))
     }
 
     /// Reads all records of an element.

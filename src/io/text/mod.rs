@@ -5,53 +5,16 @@
 //! columns for their meaning ([`super::columns`]). What it finds then holds
 //! for the whole file: a line that disagrees is an error, not a guess.
 
+mod preamble;
+
 use super::cloud::{Cloud, Parts, ReadOptions};
 use super::columns::{self, Table};
 use super::error::{Place, ReadError};
 use super::format::CloudFormat;
 use super::scan::{self, Lines, Words};
 use super::sink::check_count;
+use preamble::{decimal_commas, first_data, is_comment, position_columns, Delimiter, Preamble};
 use std::collections::BTreeMap;
-
-#[derive(Clone, Copy, PartialEq)]
-enum Delimiter {
-    Blank,
-    Byte(u8),
-}
-
-impl Delimiter {
-    fn of(line: &[u8]) -> Delimiter {
-        match [b';', b','].into_iter().find(|d| line.contains(d)) {
-            Some(d) => Delimiter::Byte(d),
-            None => Delimiter::Blank,
-        }
-    }
-
-    /// The fields of a line with their offsets, without blanks and quotes.
-    fn fields(self, line: &[u8]) -> Vec<(usize, &[u8])> {
-        let Delimiter::Byte(d) = self else {
-            return Words::new(line).map(|(at, w)| (at, unquoted(w))).collect();
-        };
-        let mut at = 0;
-        let field = |f| {
-            let offset = at;
-            at += <[u8]>::len(f) + 1;
-            (offset, unquoted(f.trim_ascii()))
-        };
-        line.split(|&b| b == d).map(field).collect()
-    }
-}
-
-fn unquoted(field: &[u8]) -> &[u8] {
-    let quoted = |q: u8| field.strip_prefix(&[q])?.strip_suffix(&[q]);
-    quoted(b'"').or_else(|| quoted(b'\'')).unwrap_or(field)
-}
-
-/// Whether a word starts a comment.
-#[inline]
-fn is_comment(word: &[u8]) -> bool {
-    matches!(word[0], b'#' | b'%' | b';' | b'!') || word.starts_with(b"//")
-}
 
 /// How the lines of this file are to be read.
 struct Layout {
@@ -63,16 +26,6 @@ struct Layout {
     letters: bool,
     /// The line that set the number of columns.
     model: u64,
-}
-
-/// What the lines before the first point say.
-#[derive(Default)]
-struct Preamble {
-    count: Option<u64>,
-    names: Option<(u64, Vec<String>)>,
-    /// Names in a comment: used only if they fit the columns.
-    commented: Option<Vec<String>>,
-    passed_over: usize,
 }
 
 struct Reader {
@@ -127,97 +80,6 @@ fn cut(expected: u64, found: u64) -> ReadError {
     }
 }
 
-/// Reads comments, names and a count, up to the first line of data.
-fn first_data<'a>(
-    lines: &mut Lines<'a>,
-    preamble: &mut Preamble,
-) -> Result<Option<(u64, &'a [u8])>, ReadError> {
-    for (number, line) in lines {
-        let first = scan::first_word(line);
-        if first.is_empty() {
-            continue;
-        }
-        if is_comment(first) {
-            preamble.passed_over += 1;
-            let text = line.trim_ascii_start();
-            let start = text.iter().position(|b| !b"#%;!/ \t".contains(b));
-            let text = &text[start.unwrap_or(text.len())..];
-            let names = names_of(Delimiter::of(text), text);
-            if position_columns(&names).is_ok_and(|found| found.is_some()) {
-                preamble.commented = Some(names);
-            }
-            continue;
-        }
-        let fields = Delimiter::of(line).fields(line);
-        let numeric = |f: &&(usize, &[u8])| scan::number(f.1).is_some();
-        let numbers = fields.iter().filter(numeric).count();
-        let whole = |f: &[u8]| f.iter().all(u8::is_ascii_digit) && !f.is_empty();
-        if fields.len() == 1 && whole(fields[0].1) && preamble.count.is_none() {
-            preamble.count = scan::integer(fields[0].1).map(|n| n.unsigned_abs());
-            preamble.passed_over += 1;
-        } else if numbers == 0 && !decimal_commas(line) && preamble.names.is_none() {
-            let names = names_of(Delimiter::of(line), line);
-            preamble.names = Some((number, names));
-            preamble.passed_over += 1;
-        } else {
-            return Ok(Some((number, line)));
-        }
-    }
-    Ok(None)
-}
-
-fn names_of(delimiter: Delimiter, line: &[u8]) -> Vec<String> {
-    let fields = delimiter.fields(line);
-    let name = |&(_, f): &(usize, &[u8])| String::from_utf8_lossy(f).trim().to_string();
-    let mut names: Vec<String> = fields.iter().take(columns::MOST + 1).map(name).collect();
-    while names.last().is_some_and(|n| n.is_empty()) {
-        names.pop();
-    }
-    names
-}
-
-/// The columns named x, y and z: `Ok(None)` if none is, an error (the letter)
-/// if one is missing or named twice.
-fn position_columns(names: &[String]) -> Result<Option<[usize; 3]>, &'static str> {
-    let find = |letter: &'static str, other: &str| {
-        // `X (m)`, `x[mm]`: without the unit.
-        let bare = |n: &str| n.split(['(', '[']).next().unwrap_or(n).trim().to_string();
-        let known = |n: &str| bare(n).eq_ignore_ascii_case(letter) || n.eq_ignore_ascii_case(other);
-        let mut found = (0..names.len()).filter(|&i| known(&names[i]));
-        (found.next(), found.next().is_some(), letter)
-    };
-    let all = [
-        find("x", "Points:0"),
-        find("y", "Points:1"),
-        find("z", "Points:2"),
-    ];
-    if all.iter().all(|f| f.0.is_none()) {
-        return Ok(None);
-    }
-    if let Some(&(_, _, letter)) = all.iter().find(|f| f.1 || f.0.is_none()) {
-        return Err(letter);
-    }
-    Ok(Some(all.map(|f| f.0.unwrap_or(0))))
-}
-
-/// Whether a line of data seems to be written with decimal commas.
-fn decimal_commas(line: &[u8]) -> bool {
-    if line.contains(&b';') {
-        let mut fields = line.split(|&b| b == b';');
-        return fields.any(|f| scan::decimal_comma(f.trim_ascii()));
-    }
-    let words: Vec<&[u8]> = Words::new(line).map(|(_, w)| w).take(16).collect();
-    if words.len() < 3 {
-        return false;
-    }
-    let stripped = |w: &&[u8]| scan::decimal_comma(w.strip_suffix(b",").unwrap_or(w));
-    words.iter().all(|w| stripped(w))
-        || words.iter().any(|w| scan::decimal_comma(w))
-            && words
-                .iter()
-                .all(|w| !w.ends_with(b",") && !w.starts_with(b","))
-}
-
 impl Reader {
     /// Settles the layout by the first line of data.
     fn new(
@@ -240,11 +102,13 @@ impl Reader {
         let first = scan::first_word(line);
         let letters = first.len() == 1 && first[0].is_ascii_alphabetic();
         let delimiter = Delimiter::of(line);
-        let mut count = delimiter.fields(line).len();
-        if let Delimiter::Byte(_) = delimiter {
-            let fields = delimiter.fields(line);
-            count -= usize::from(fields.last().is_some_and(|f| f.1.is_empty()));
+        let words = delimiter.fields(line).take_while(|(_, w)| !is_comment(w));
+        let mut fields: Vec<&[u8]> = words.map(|(_, w)| w).collect();
+        let most = fields.len();
+        while fields.last().is_some_and(|w| w.is_empty()) {
+            fields.pop();
         }
+        let mut count = fields.len();
         if letters {
             // How many columns the points have is not known yet.
             count = 0;
@@ -252,7 +116,8 @@ impl Reader {
         let mut names = None;
         let mut model = number;
         if let Some((at, found)) = preamble.names.filter(|_| !letters) {
-            if found.len() != count && found.len() != count + 1 {
+            // Values may be missing at the end, their delimiters not.
+            if !(count..=most).contains(&found.len()) {
                 return Err(ReadError::Columns {
                     line: number,
                     found: count,
@@ -299,12 +164,6 @@ impl Reader {
         };
         if !letters {
             reader.settle(number, count, xyz, names)?;
-            if let Some(count) = preamble.count {
-                // No more than the bytes of the file could hold.
-                let line = line.len() as u64 + 1;
-                let _ = line;
-                reader.table.points.reserve(count.min(1 << 16) as usize);
-            }
         }
         Ok(reader)
     }
@@ -365,14 +224,7 @@ impl Reader {
                 self.fields(number, words)
             }
             Delimiter::Byte(_) if scan::first_word(line).is_empty() => Ok(()),
-            delimiter => {
-                let fields = delimiter.fields(line);
-                // One empty field more is only a delimiter at the end.
-                let more = fields.len() == self.layout.columns + 1
-                    && fields.last().is_some_and(|f| f.1.is_empty());
-                let used = fields.len() - usize::from(more);
-                self.fields(number, fields[..used].iter().copied())
-            }
+            delimiter => self.fields(number, delimiter.fields(line)),
         }
     }
 
@@ -409,14 +261,15 @@ impl Reader {
         let mut count = 0;
         let mut single = None;
         for (at, word) in fields {
-            if !word.is_empty() && is_comment(word) {
+            if is_comment(word) {
                 break;
             }
             if count == 0 {
                 single = Some(word);
             }
             let Some(&target) = self.layout.targets.get(count) else {
-                count += 1;
+                // A delimiter at the end of a line does no harm.
+                count += usize::from(!word.is_empty());
                 continue;
             };
             let value = match scan::number(word) {

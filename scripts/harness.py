@@ -1,0 +1,152 @@
+"""What the scripts share: places, runs with time and memory, the judge, tables."""
+
+import csv
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def shared() -> Path:
+    """The folder of scans and checks that lies beside a checkout."""
+    place = Path(os.environ.get("POWERCRUST_SHARED", ROOT.parent / "shared"))
+    if not (place / "scans").is_dir():
+        sys.exit(f"{place} holds no scans: set POWERCRUST_SHARED")
+    return place
+
+
+def add_binary_option(parser) -> None:
+    parser.add_argument(
+        "--binary",
+        type=Path,
+        default=ROOT / "target" / "release" / "powercrust",
+        help="the program to run (default: the release build)",
+    )
+
+
+def require_binary(path: Path) -> Path:
+    if not path.is_file():
+        sys.exit(f"{path} is not there: cargo build --release")
+    return path.resolve()
+
+
+@dataclass
+class Run:
+    """One finished process."""
+
+    code: int  # negative: ended by that signal
+    seconds: float
+    peak_mb: float
+    output: str
+    errors: str
+    timed_out: bool
+
+
+def run(command: list, limit_s: float = 600) -> Run:
+    """Runs a command with wall time and peak memory of that process alone."""
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        start = time.perf_counter()
+        process = subprocess.Popen(
+            [str(word) for word in command], stdin=subprocess.DEVNULL, stdout=out, stderr=err
+        )
+        expired = threading.Event()
+
+        def expire():
+            expired.set()
+            process.kill()
+
+        timer = threading.Timer(limit_s, expire)
+        timer.start()
+        _, status, usage = os.wait4(process.pid, 0)
+        seconds = time.perf_counter() - start
+        timer.cancel()
+        process.returncode = os.waitstatus_to_exitcode(status)
+        texts = []
+        for stream in (out, err):
+            stream.seek(0)
+            texts.append(stream.read().decode("utf-8", "replace"))
+        return Run(
+            process.returncode, seconds, usage.ru_maxrss / 1024, *texts, expired.is_set()
+        )
+
+
+def reconstruct(binary: Path, cloud: Path, mesh: Path, *options, limit_s: float = 600):
+    """Points to mesh with our program: the run, and its statistics or None."""
+    stats = mesh.with_suffix(".json")
+    stats.unlink(missing_ok=True)
+    mesh.unlink(missing_ok=True)
+    done = run([binary, cloud, "-o", mesh, "--stats", stats, *options], limit_s)
+    found = json.loads(stats.read_text()) if stats.is_file() else None
+    return done, found
+
+
+def stage_seconds(stats: dict) -> dict:
+    """Seconds by stage, in order."""
+    return dict(stats["stats"]["seconds"])
+
+
+def judge(mesh: Path, *options) -> dict:
+    """The verdict of shared/checks/check_mesh.py; `failures` lists what is wrong."""
+    done = run([sys.executable, shared() / "checks" / "check_mesh.py", mesh, *options], 1800)
+    try:
+        return json.loads(done.output)
+    except json.JSONDecodeError:
+        return {"failures": [f"the judge failed: {done.errors.strip()[-200:]}"]}
+
+
+def require_modules(*names: str) -> None:
+    """Ends the program when the Python in use lacks a module."""
+    lacking = [name for name in names if importlib.util.find_spec(name) is None]
+    if lacking:
+        sys.exit(f"{sys.executable} lacks {', '.join(lacking)}: pip install {' '.join(lacking)}")
+
+
+def truths() -> dict:
+    """TRUTH.csv by file name."""
+    with open(shared() / "scans" / "TRUTH.csv", newline="") as rows:
+        return {row["file"]: row for row in csv.DictReader(rows)}
+
+
+def read_points(path: Path):
+    """The finite points of a cloud, read without any code of the project."""
+    import numpy as np
+
+    if path.suffix == ".ply":
+        from plyfile import PlyData
+
+        vertices = PlyData.read(str(path))["vertex"]
+        points = np.column_stack([np.asarray(vertices[k], np.float64) for k in "xyz"])
+    else:
+        rows = []
+        for line in path.read_text(errors="replace").splitlines():
+            words = line.split()
+            if words and words[0] in ("p", "v"):
+                words = words[1:]
+            try:
+                row = [float(word) for word in words[:3]]
+            except ValueError:
+                continue
+            if len(row) == 3:
+                rows.append(row)
+        points = np.array(rows, np.float64).reshape(-1, 3)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+class Table:
+    """A markdown table, printed row by row while the work goes on."""
+
+    def __init__(self, *heads: str):
+        print("| " + " | ".join(heads) + " |")
+        print("|" + " --- |" * len(heads), flush=True)
+
+    def row(self, *cells) -> None:
+        texts = (str(cell).replace("|", "\\|").replace("\n", " ") for cell in cells)
+        print("| " + " | ".join(texts) + " |", flush=True)
