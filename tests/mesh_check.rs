@@ -51,7 +51,7 @@ fn flipped(mesh: &PolygonMesh) -> PolygonMesh {
     flipped
 }
 
-/// Both meshes in one, `b`'s vertices renamed by `name`.
+/// Both meshes in one.
 fn join(a: &PolygonMesh, b: &PolygonMesh) -> PolygonMesh {
     let mut both = a.clone();
     let shift = a.vertices.len() as u32;
@@ -298,8 +298,8 @@ fn polygons_that_are_not_convex_are_no_fault() {
         }
         let report = judge(&prism);
         assert!(report.is_embedded(), "{turn}: {:?}", report.findings);
-        assert_eq!(report.volume, 3.0);
-        assert_eq!(report.area, 14.0);
+        assert!((report.volume - 3.0).abs() < 1e-14);
+        assert!((report.area - 14.0).abs() < 1e-14);
     }
 }
 
@@ -340,11 +340,8 @@ fn wavy_sphere(n: u32, wave: f64) -> PolygonMesh {
             let longitude = std::f64::consts::TAU * f64::from(j) / f64::from(n);
             let r = 1.0 + wave * (random.next() % 1000) as f64 / 1000.0;
             let (s, c) = latitude.sin_cos();
-            mesh.vertices.push([
-                r * s * longitude.cos(),
-                r * s * longitude.sin(),
-                r * -c,
-            ]);
+            mesh.vertices
+                .push([r * s * longitude.cos(), r * s * longitude.sin(), r * -c]);
         }
     }
     mesh.vertices.push([0.0, 0.0, 1.0]);
@@ -364,7 +361,9 @@ fn wavy_sphere(n: u32, wave: f64) -> PolygonMesh {
 
 #[test]
 fn reports_do_not_depend_on_threads() {
-    let mesh = join(&wavy_sphere(60, 0.0), &wavy_sphere(60, 0.2));
+    let mut waves = wavy_sphere(60, 0.2);
+    waves.vertices.iter_mut().flatten().for_each(|x| *x *= 0.9);
+    let mesh = join(&wavy_sphere(60, 0.0), &waves);
     let options = CheckOptions {
         max_findings: 50,
         ..CheckOptions::default()
@@ -633,7 +632,9 @@ fn the_tree_finds_the_pairs_that_brute_force_finds() {
             .filter(|f| {
                 matches!(
                     f,
-                    Finding::Crossing { .. } | Finding::Touching { .. } | Finding::Coincident { .. }
+                    Finding::Crossing { .. }
+                        | Finding::Touching { .. }
+                        | Finding::Coincident { .. }
                 )
             })
             .collect();
@@ -674,7 +675,10 @@ fn dense_distance(p: Point, one: &PolygonMesh) -> f64 {
     let mut least = f64::INFINITY;
     for i in 0..=steps {
         for j in 0..=steps - i {
-            let (u, v) = (f64::from(i) / f64::from(steps), f64::from(j) / f64::from(steps));
+            let (u, v) = (
+                f64::from(i) / f64::from(steps),
+                f64::from(j) / f64::from(steps),
+            );
             let q: Point = std::array::from_fn(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]));
             let d: f64 = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum();
             least = least.min(d.sqrt());
@@ -771,16 +775,22 @@ fn public_meshes_have_their_known_facts() {
         let report = judge(&mesh);
         let fact = |name: &str| fields[column(name)].parse::<f64>().ok();
         eprintln!(
-            "{file}: {} faces, {:?}, crossing {}, touching {}, coincident {}, {:?}",
+            "{file}: {} faces in {:?}, {:?} cross, {:?} touch",
             report.faces,
             start.elapsed(),
             report.counts.crossing_faces,
             report.counts.touching_faces,
-            report.counts.coincident,
-            report.counts,
         );
-        assert_eq!(report.is_closed() as u8 as f64, fact("closed").unwrap(), "{file}");
-        assert_eq!(report.components as f64, fact("components").unwrap(), "{file}");
+        assert_eq!(
+            report.is_closed() as u8 as f64,
+            fact("closed").unwrap(),
+            "{file}"
+        );
+        assert_eq!(
+            report.components as f64,
+            fact("components").unwrap(),
+            "{file}"
+        );
         if let Some(bad) = fact("nonmanifold_edges") {
             assert_eq!(report.counts.non_manifold_edge as f64, bad, "{file}");
         }
@@ -793,7 +803,8 @@ fn public_meshes_have_their_known_facts() {
         }
         if let Some(volume) = fact("volume") {
             let error = (report.volume - volume).abs() / volume.abs();
-            assert!(error < 1e-6, "{file}: {} not {volume}", report.volume);
+            // Polygons that are not planar leave some choice.
+            assert!(error < 1e-5, "{file}: {} not {volume}", report.volume);
         }
         let backwards = fact("volume").is_some_and(|v| v < 0.0);
         assert_eq!(report.counts.inside_out > 0, backwards, "{file}");
@@ -802,4 +813,41 @@ fn public_meshes_have_their_known_facts() {
         }
     }
     assert!(read >= 45, "{read} meshes read");
+}
+
+/// `cargo test --release --test mesh_check -- --ignored --nocapture speed`
+#[test]
+#[ignore = "measures"]
+fn speed() {
+    for (n, wave) in [(708, 0.0), (708, 0.001), (708, 0.03), (1581, 0.001)] {
+        let mesh = wavy_sphere(n, wave);
+        for intersections in [false, true] {
+            let options = CheckOptions {
+                intersections,
+                ..CheckOptions::default()
+            };
+            let start = std::time::Instant::now();
+            let report = check(&mesh, &options, &Context::default()).unwrap();
+            eprintln!(
+                "{} triangles, wave {wave}, intersections {intersections}: {:?}, {} cross",
+                report.triangles,
+                start.elapsed(),
+                report.counts.crossing_faces,
+            );
+        }
+        let start = std::time::Instant::now();
+        let surface = Surface::new(&mesh);
+        let built = start.elapsed();
+        let start = std::time::Instant::now();
+        let points: Vec<Point> = (mesh.vertices.iter())
+            .map(|p| p.map(|x| x * 1.01))
+            .collect();
+        let far = surface.distances(&points, &Context::default()).unwrap();
+        let far = far.into_iter().fold(0.0, f64::max);
+        eprintln!(
+            "  tree in {built:?}, {} distances in {:?}, up to {far}",
+            points.len(),
+            start.elapsed(),
+        );
+    }
 }

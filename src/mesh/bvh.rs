@@ -250,8 +250,8 @@ impl Bvh {
                     }
                 }
             } else {
-                let [l, r] = [n + 1, n + node.right]
-                    .map(|c| (self.nodes[c as usize].cuboid.dist_sq(p), c));
+                let [l, r] =
+                    [n + 1, n + node.right].map(|c| (self.nodes[c as usize].cuboid.dist_sq(p), c));
                 let (near, far) = if l.0 <= r.0 { (l, r) } else { (r, l) };
                 stack.push(far);
                 stack.push(near);

@@ -6,9 +6,10 @@
 //! point. The running time is near-linear for meshes whose faces do not crowd,
 //! and the report does not depend on the number of threads.
 
-use super::crossing::{coincidences, crossings, flat, Crossings, Kind};
+use super::crossing::{coincidences, crossings, flat, Crossings, Field, Kind};
 use super::frame::Frame;
 use super::measure::{finite_bounds, middle, shape, sizes};
+use super::nesting;
 use super::report::{Counts, Finding, Report, Shell};
 use super::soup::{Faces, Fault, Triangles};
 use super::topology::{EdgeFault, Topology};
@@ -138,7 +139,10 @@ fn judge(
     cx.advance(Stage::Check, 0, 1)?;
     for (vertex, _) in topology.fans.iter().enumerate().filter(|&(_, &n)| n == 0) {
         let vertex = vertex as u32;
-        ledger.add(|c| &mut c.unused_vertex, || Finding::UnusedVertex { vertex });
+        ledger.add(
+            |c| &mut c.unused_vertex,
+            || Finding::UnusedVertex { vertex },
+        );
     }
     edge_findings(&faces, &topology, &mut ledger);
     for (vertex, &fans) in topology.fans.iter().enumerate().filter(|&(_, &n)| n > 1) {
@@ -150,7 +154,7 @@ fn judge(
     }
 
     let frame = Frame::new(points);
-    let triangles = faces.triangles();
+    let triangles = faces.triangles(&frame);
     let mut skip = flat(&frame, &triangles);
     zero_areas(&faces, &triangles, &skip, &finite, &mut ledger);
     for (skip, t) in skip.iter_mut().zip(&triangles.corners) {
@@ -159,26 +163,24 @@ fn judge(
     duplicate_faces(&faces, &mut ledger);
     let (canonical, duplicate_positions) = coincidences(&frame, &finite);
     cx.advance(Stage::Check, 0, 1)?;
-    if o.intersections {
-        let found = crossings(
-            &frame,
-            &canonical,
-            &triangles,
-            faces.len(),
-            &skip,
-            o.max_findings,
-            cx,
-        )?;
-        enter_crossings(&faces, found, &mut ledger);
-    }
-
     let used = (0..points.len()).filter(|&v| topology.fans[v] > 0);
     let used_count = used.clone().count();
     let bounds = finite_bounds(used.map(|v| &points[v]));
     let shells = shells(points, middle(&bounds), &faces, &triangles, &topology);
     let shape = shape(points, &triangles);
     let volume: f64 = shells.iter().map(|s| s.volume).sum();
-    inside_out(&shells, volume, &mut ledger);
+    let mut depths = None;
+    if o.intersections {
+        let field = Field::new(&frame, &canonical, &triangles, &skip);
+        let found = crossings(&field, faces.len(), o.max_findings, cx)?;
+        let apart = found.pairs[Kind::Crossing as usize] + found.pairs[Kind::Touching as usize];
+        enter_crossings(&faces, found, &mut ledger);
+        if apart == 0 && shells.len() > 1 {
+            let closed: Vec<bool> = shells.iter().map(|s| s.closed).collect();
+            depths = Some(nesting::depths(&field, &topology, &closed));
+        }
+    }
+    inside_out(&shells, volume, depths, &mut ledger);
     Ok(Report {
         vertices: points.len() as u64,
         faces: mesh.face_count() as u64,
@@ -379,12 +381,23 @@ fn shells(
     shells
 }
 
-fn inside_out(shells: &[Shell], volume: f64, ledger: &mut Ledger) {
-    if volume > 0.0 {
-        return;
-    }
-    for (shell, _) in (shells.iter().enumerate()).filter(|(_, s)| s.closed && s.volume <= 0.0) {
-        let shell = shell as u32;
-        ledger.add(|c| &mut c.inside_out, || Finding::InsideOut { shell });
+/// Shells at an even depth enclose solid, those at an odd depth are walls of
+/// cavities. Where depths are not to be told, only the total volume judges.
+fn inside_out(
+    shells: &[Shell],
+    volume: f64,
+    depths: Option<Vec<Option<u32>>>,
+    ledger: &mut Ledger,
+) {
+    for (s, shell) in shells.iter().enumerate().filter(|(_, s)| s.closed) {
+        let wrong = match depths.as_ref().map(|d| d[s]) {
+            Some(Some(depth)) => (shell.volume > 0.0) != (depth % 2 == 0),
+            Some(None) => false,
+            None => volume <= 0.0 && shell.volume <= 0.0,
+        };
+        if wrong {
+            let shell = s as u32;
+            ledger.add(|c| &mut c.inside_out, || Finding::InsideOut { shell });
+        }
     }
 }

@@ -45,37 +45,62 @@ fn keep(found: &mut Vec<(u32, u32)>, max: usize) {
     found.truncate(max);
 }
 
-/// Tests all pairs of triangles of positive area whose corners are finite.
-/// `canonical` maps a vertex to the first vertex at its position.
+/// The triangles of a mesh in a tree.
+pub(super) struct Field<'a> {
+    pub frame: &'a Frame,
+    pub triangles: &'a Triangles,
+    pub bvh: Bvh,
+    /// By slot of the tree, so that neighbours in space are neighbours in
+    /// memory: the triangle, and for each of its corners the first vertex at
+    /// that position.
+    pub slots: Vec<(u32, [u32; 3])>,
+}
+
+impl<'a> Field<'a> {
+    /// Takes the triangles that are not to be skipped: those of positive area
+    /// whose corners are finite. `canonical` maps a vertex to the first
+    /// vertex at its position.
+    pub fn new(
+        frame: &'a Frame,
+        canonical: &[u32],
+        triangles: &'a Triangles,
+        skip: &[bool],
+    ) -> Field<'a> {
+        let listed: Vec<u32> = (0..skip.len() as u32)
+            .filter(|&t| !skip[t as usize])
+            .collect();
+        let corners = |t: u32| triangles.corners[t as usize];
+        let boxes: Vec<Cuboid> = listed
+            .par_iter()
+            .map(|&t| Cuboid::of(&place(&frame.points, corners(t))))
+            .collect();
+        let bvh = Bvh::new(&boxes);
+        let slots = (bvh.order.par_iter())
+            .map(|&k| {
+                let t = listed[k as usize];
+                (t, corners(t).map(|v| canonical[v as usize]))
+            })
+            .collect();
+        Field {
+            frame,
+            triangles,
+            bvh,
+            slots,
+        }
+    }
+}
+
+/// Tests all pairs of triangles; `faces` is the number of faces.
 pub(super) fn crossings(
-    frame: &Frame,
-    canonical: &[u32],
-    triangles: &Triangles,
+    field: &Field,
     faces: usize,
-    skip: &[bool],
     max: usize,
     cx: &Context,
 ) -> Result<Crossings, Cancelled> {
-    let listed: Vec<u32> = (0..skip.len() as u32)
-        .filter(|&t| !skip[t as usize])
-        .collect();
+    let (frame, triangles, slots) = (field.frame, field.triangles, &field.slots);
     let corners = |t: u32| triangles.corners[t as usize];
-    let boxes: Vec<Cuboid> = listed
-        .par_iter()
-        .map(|&t| Cuboid::of(&place(&frame.points, corners(t))))
-        .collect();
-    let bvh = Bvh::new(&boxes);
-    drop(boxes);
-    cx.advance(Stage::Check, 0, 1)?;
-    // By slot, so that neighbours in space are neighbours in memory.
-    let slots: Vec<(u32, [u32; 3])> = (bvh.order.par_iter())
-        .map(|&k| {
-            let t = listed[k as usize];
-            (t, corners(t).map(|v| canonical[v as usize]))
-        })
-        .collect();
     let marks: Vec<AtomicU8> = (0..faces).map(|_| AtomicU8::new(0)).collect();
-    let parts = bvh.self_join(
+    let parts = field.bvh.self_join(
         |part: &mut Part, i, j| {
             let ((s, a), (t, b)) = (slots[i as usize], slots[j as usize]);
             let Some(kind) = judge(frame, a, b, || (corners(s), corners(t))) else {

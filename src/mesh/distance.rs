@@ -32,16 +32,16 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Prepares a mesh; polygons are fanned from their first corner. Faces
+    /// Prepares a mesh; polygons are cut into triangles as
+    /// [`super::check()`] does. Faces
     /// that cannot be walked or have corners that are not finite are left
     /// out.
     pub fn new(mesh: &PolygonMesh) -> Surface {
         let frame = Frame::rounded(&mesh.vertices);
         let faces = Faces::of(mesh, |_, _| ());
-        let mut corners = faces.triangles().corners;
-        corners.retain(|t| {
-            (t.iter().flat_map(|&v| mesh.vertices[v as usize])).all(|x| x.is_finite())
-        });
+        let mut corners = faces.triangles(&frame).corners;
+        corners
+            .retain(|t| (t.iter().flat_map(|&v| mesh.vertices[v as usize])).all(|x| x.is_finite()));
         let boxes: Vec<Cuboid> = (corners.par_iter())
             .map(|&t| Cuboid::of(&place(&frame.points, t)))
             .collect();
@@ -98,8 +98,9 @@ impl Surface {
 fn triangle_dist_sq(p: Point, &[a, b, c]: &[Point; 3]) -> f64 {
     let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
     let normal = cross(ab, sub(c, a));
-    let inside = |from: Point, side: Point| dot(cross(side, sub(p, from)), normal) >= 0.0;
+    let inside = |from: Point, side: Point| dot(cross(side, sub(p, from)), normal) > 0.0;
     let length_sq = norm_sq(normal);
+    // Strictly inside only, so that corners have distance zero exactly.
     if length_sq > 0.0 && inside(a, ab) && inside(b, bc) && inside(c, ca) {
         let height = dot(sub(p, a), normal);
         return height * height / length_sq;

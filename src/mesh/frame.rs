@@ -223,8 +223,8 @@ mod tests {
         let c = [0.9, 0.3, third];
         let d: Point = std::array::from_fn(|k| (a[k] + b[k]) / 2.0);
         for e in [a, d, [0.5, 0.5, 0.5]] {
-            let [x, y, z] = [Kernel::Lattice, Kernel::Wide, Kernel::Extreme]
-                .map(|k| k.orient3d(a, b, c, e));
+            let [x, y, z] =
+                [Kernel::Lattice, Kernel::Wide, Kernel::Extreme].map(|k| k.orient3d(a, b, c, e));
             assert!(x == y && y == z);
         }
     }

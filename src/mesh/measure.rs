@@ -1,9 +1,10 @@
 //! Sizes of a mesh in floating point: volumes, areas, angles.
 
+use super::frame::Frame;
 use super::soup::{place, Faces, Triangles};
 use super::topology::Topology;
 use super::PolygonMesh;
-use crate::geom::vec3::{cross, dot, norm, sub};
+use crate::geom::vec3::{cross, dot, norm, norm_sq, sub};
 use crate::geom::{Bounds, Point};
 
 /// Volume and area of a set of faces.
@@ -56,9 +57,8 @@ pub(super) fn shape(points: &[Point], triangles: &Triangles) -> Shape {
         let [a, b, c] = place(points, t);
         let mut sides = [sub(c, b), sub(a, c), sub(b, a)];
         let doubled = norm(cross(sides[1], sides[2]));
-        sides.sort_by(|x, y| dot(*x, *x).total_cmp(&dot(*y, *y)));
-        let longest = norm(sides[2]);
-        let aspect = longest * longest / doubled;
+        sides.sort_by(|x, y| norm_sq(*x).total_cmp(&norm_sq(*y)));
+        let aspect = norm_sq(sides[2]) / doubled;
         let class = ASPECTS.iter().position(|&most| aspect <= most);
         shape.aspects[class.unwrap_or(ASPECTS.len())] += 1;
         // The smallest angle lies between the two longer sides.
@@ -124,7 +124,7 @@ pub fn component_volumes(mesh: &PolygonMesh) -> Vec<f64> {
     sizes(
         &mesh.vertices,
         origin,
-        &faces.triangles(),
+        &faces.triangles(&Frame::new(&mesh.vertices)),
         &topology.shell,
         topology.shell_edges.len(),
     )

@@ -11,6 +11,8 @@ mod distance;
 mod frame;
 mod intersect;
 mod measure;
+mod nesting;
+mod polygon;
 mod report;
 mod soup;
 mod topology;

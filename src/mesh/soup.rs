@@ -1,5 +1,7 @@
 //! The faces of any mesh, made safe to walk, and the triangles they stand for.
 
+use super::frame::Frame;
+use super::polygon::triangulate;
 use super::PolygonMesh;
 use crate::geom::Point;
 
@@ -87,18 +89,19 @@ impl Faces {
         next
     }
 
-    /// The fan of triangles of each face, from its first corner.
-    pub fn triangles(&self) -> Triangles {
+    /// The triangles of each face; see [`triangulate`].
+    pub fn triangles(&self, frame: &Frame) -> Triangles {
         let count = self.corners.len() - 2 * self.len();
         let mut triangles = Triangles {
             corners: Vec::with_capacity(count),
             face: Vec::with_capacity(count),
         };
         for (f, face) in self.iter().enumerate() {
-            for pair in face[1..].windows(2) {
-                triangles.corners.push([face[0], pair[0], pair[1]]);
-                triangles.face.push(f as u32);
+            match face {
+                &[a, b, c] => triangles.corners.push([a, b, c]),
+                _ => triangulate(frame, face, &mut triangles.corners),
             }
+            triangles.face.resize(triangles.corners.len(), f as u32);
         }
         triangles
     }

@@ -44,8 +44,6 @@ pub(super) struct Topology {
     pub shell: Vec<u32>,
     /// Number of edges of each shell; its length is the number of shells.
     pub shell_edges: Vec<u64>,
-    /// The component of each face by shared vertices.
-    pub component: Vec<u32>,
     /// Number of components by shared vertices.
     pub components: u32,
 }
@@ -180,7 +178,6 @@ impl Topology {
         for f in edge_face {
             shell_edges[shell[f as usize] as usize] += 1;
         }
-        let (component, components) = by_vertices(vertices, faces);
         Topology {
             edges,
             bad,
@@ -189,8 +186,7 @@ impl Topology {
             fans: fans_at,
             shell,
             shell_edges,
-            component,
-            components,
+            components: by_vertices(vertices, faces),
         }
     }
 
@@ -225,30 +221,19 @@ impl Topology {
     }
 }
 
-/// Components of faces that share vertices: a label per face, numbered by
-/// first face, and their number.
-fn by_vertices(vertices: usize, faces: &Faces) -> (Vec<u32>, u32) {
+/// The number of components of faces that share vertices.
+fn by_vertices(vertices: usize, faces: &Faces) -> u32 {
     let mut sets = Sets::new(vertices);
+    let mut used = vec![false; vertices];
     for face in faces.iter() {
-        for &v in &face[1..] {
+        for &v in face {
             sets.join(face[0], v);
+            used[v as usize] = true;
         }
     }
     let roots = sets.flatten();
-    let mut label = vec![u32::MAX; vertices];
-    let mut count = 0;
-    let labels = faces
-        .iter()
-        .map(|face| {
-            let label = &mut label[roots[face[0] as usize] as usize];
-            if *label == u32::MAX {
-                *label = count;
-                count += 1;
-            }
-            *label
-        })
-        .collect();
-    (labels, count)
+    let is_root = |&v: &usize| used[v] && roots[v] as usize == v;
+    (0..vertices).filter(is_root).count() as u32
 }
 
 #[cfg(test)]
