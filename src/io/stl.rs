@@ -70,9 +70,19 @@ impl Weld {
         }
     }
 
+    /// Makes room for the vertices that a closed surface of so many triangles
+    /// has: half as many.
+    fn expect(&mut self, triangles: usize) {
+        self.points.reserve(triangles / 2 + 8);
+        self.resize((triangles + 16).next_power_of_two());
+    }
+
     #[cold]
     fn grow(&mut self) {
-        let size = (self.slots.len() * 2).max(1024);
+        self.resize((self.slots.len() * 2).max(1024));
+    }
+
+    fn resize(&mut self, size: usize) {
         self.slots = vec![FREE; size];
         for (index, &p) in self.points.iter().enumerate() {
             let mut slot = hash(p) & (size - 1);
@@ -169,6 +179,7 @@ fn read_binary(bytes: &[u8], out: &mut Contents) -> Result<(), ReadError> {
         out.notes.push(note);
     }
     out.corners.reserve_exact(count as usize * 3);
+    out.weld.expect(count as usize);
     for (r, record) in records.enumerate() {
         for corner in record[12..48].chunks_exact(12) {
             let mut p = [0.0; 3];
