@@ -9,9 +9,10 @@
 //! The camera follows from the shape: its longest principal axis lies across
 //! the picture, the next one upward, and the viewer looks from the right and
 //! above, in parallel projection. A file without faces is drawn as dots. With
-//! `--axis` the surface becomes a translucent shell around the axis. Surface
-//! seen from behind is drawn red, so that a hole or a flipped face shows. The
-//! same input gives the same bytes.
+//! `--axis` the surface becomes a translucent shell around the axis; with
+//! `--like FILE` the camera is the one that FILE would have. Surface seen from
+//! behind is drawn red, so that a hole or a flipped face shows. The same input
+//! gives the same bytes.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -35,13 +36,15 @@ struct Arguments {
     mesh: PathBuf,
     picture: PathBuf,
     axis: Option<PathBuf>,
+    like: Option<PathBuf>,
     size: [usize; 2],
     flat: bool,
     turn: f64,
     tilt: f64,
 }
 
-const USAGE: &str = "usage: render MESH PICTURE.png [--axis FILE] [--size WIDTHxHEIGHT] [--flat] \
+const USAGE: &str =
+    "usage: render MESH PICTURE.png [--axis FILE] [--like FILE] [--size WIDTHxHEIGHT] [--flat] \
                      [--turn DEGREES] [--tilt DEGREES]";
 
 fn arguments() -> Result<Arguments, Box<dyn Error>> {
@@ -49,6 +52,7 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
         mesh: PathBuf::new(),
         picture: PathBuf::new(),
         axis: None,
+        like: None,
         size: [1200, 900],
         flat: false,
         turn: 35.0,
@@ -60,6 +64,7 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
         let mut value = || words.next().ok_or(format!("{word} needs a value\n{USAGE}"));
         match word.as_str() {
             "--axis" => found.axis = Some(value()?.into()),
+            "--like" => found.like = Some(value()?.into()),
             "--size" => {
                 let text = value()?;
                 let (w, h) = text.split_once('x').ok_or("--size is WIDTHxHEIGHT")?;
@@ -88,7 +93,10 @@ fn arguments() -> Result<Arguments, Box<dyn Error>> {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments()?;
     let mesh = read_mesh(&arguments.mesh)?;
-    let camera = Camera::new(&mesh.vertices, &arguments)?;
+    let camera = match &arguments.like {
+        Some(path) => Camera::new(&read_mesh(path)?.vertices, &arguments)?,
+        None => Camera::new(&mesh.vertices, &arguments)?,
+    };
     let mut picture = Layer::new(arguments.size);
     match &arguments.axis {
         Some(path) => {

@@ -168,7 +168,7 @@ pub struct Reconstruct {
     pub box_factor: Option<f64>,
 
     /// Merge balls when the surface moves by less than this share of the
-    /// sampling error: 0 to 1, by default 0.1.
+    /// sampling error: 0 to 1, by default 0.3.
     #[arg(long, value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub merge: Option<f64>,
 
