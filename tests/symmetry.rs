@@ -215,29 +215,38 @@ fn turns_and_mirrors_carry_the_faces_along() {
         ("axes permuted", |[x, y, z]| [z, x, y]),
         ("mirrored", |[x, y, z]| [-x, y, z]),
     ];
-    for (name, points) in general_clouds() {
-        let given = crust(name, &points, &polygons());
-        for (how, map) in moves {
-            let name = format!("{name} {how}");
-            let moved: Vec<Point> = points.iter().map(|&p| map(p)).collect();
-            let result = crust(&name, &moved, &polygons());
-            assert!(result.crust.mesh.volume() > 0.0, "{name}: inside out");
-            let (before, after) = (face_census(&given), face_census(&result));
-            let kept: usize = before
-                .iter()
-                .map(|(face, &count)| count.min(after.get(face).copied().unwrap_or(0)))
-                .sum();
-            let faces = given.crust.mesh.face_count();
-            let lost = faces - kept;
-            let gained = result.crust.mesh.face_count() - kept;
-            println!("{name}: of {faces} faces {lost} lost, {gained} gained");
-            // Radii and centres are rounded, and a handful of faces hang on that.
-            assert!(
-                lost + gained <= faces / 200,
-                "{name}: {lost} lost, {gained} gained"
-            );
+    // Centres and radii are rounded to a lattice that does not turn along, so
+    // that near ties, of which merging adds many, may fall the other way.
+    let defaults = polygons();
+    let unmerged = Options {
+        merge: 0.0,
+        ..polygons()
+    };
+    for (options, most) in [(unmerged, 0.001), (defaults, 0.01)] {
+        for (name, points) in general_clouds() {
+            let given = crust(name, &points, &options);
+            for (how, map) in moves {
+                let name = format!("{name} {how}, merge {}", options.merge);
+                let moved: Vec<Point> = points.iter().map(|&p| map(p)).collect();
+                let result = crust(&name, &moved, &options);
+                assert!(result.crust.mesh.volume() > 0.0, "{name}: inside out");
+                let differing = faces_that_differ(&given, &result);
+                let share = differing as f64 / given.crust.mesh.face_count() as f64;
+                println!("{name}: {differing} faces differ, {:.3}%", 100.0 * share);
+                assert!(share <= most, "{name}: {differing} faces differ");
+            }
         }
     }
+}
+
+/// The number of faces of either that the other lacks.
+fn faces_that_differ(a: &Reconstruction, b: &Reconstruction) -> usize {
+    let (left, right) = (face_census(a), face_census(b));
+    let in_both: usize = left
+        .iter()
+        .map(|(face, &count)| count.min(right.get(face).copied().unwrap_or(0)))
+        .sum();
+    a.crust.mesh.face_count() + b.crust.mesh.face_count() - 2 * in_both
 }
 
 /// On degenerate clouds the symbolic perturbation is not symmetric, but the
