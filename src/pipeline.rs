@@ -6,7 +6,7 @@ use crate::context::{Context, Stage};
 use crate::delaunay::{delaunay, samples, times_power};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
-use crate::label::{energy, label, opposites, Evidence, LabelOptions, Neighbours};
+use crate::label::{energy, label, opposites, refine, Evidence, LabelOptions, Neighbours};
 use crate::options::{Faces, Options};
 use crate::poles::{poles, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
@@ -133,7 +133,9 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     let how = LabelOptions {
         deep: -options.deep_angle.to_radians().cos(),
     };
-    let labels = label(&evidence, &neighbours, &how, context)?;
+    let mut labels = label(&evidence, &neighbours, &how, context)?;
+    stats.greedy_energy = energy(&evidence, &neighbours, &labels.sides, &how);
+    stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
     stats.unreached_balls = labels.unreached;
     stats.label_energy = energy(&evidence, &neighbours, &labels.sides, &how);
     stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();

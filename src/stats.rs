@@ -41,7 +41,11 @@ pub struct Stats {
     pub vertices: usize,
     /// Volume enclosed, in the cube of the input's unit.
     pub volume: f64,
-    /// The evidence the labels go against.
+    /// The evidence the labels of the greedy pass go against.
+    pub greedy_energy: Energy,
+    /// Labels changed afterwards to lower it.
+    pub flips: u32,
+    /// The evidence the final labels go against.
     pub label_energy: Energy,
     /// Decisions of the Delaunay triangulation by stage.
     pub delaunay_predicates: Counts,
@@ -74,6 +78,8 @@ impl Stats {
             faces: 0,
             vertices: 0,
             volume: 0.0,
+            greedy_energy: Energy::default(),
+            flips: 0,
             label_energy: Energy::default(),
             delaunay_predicates: Counts::default(),
             power_predicates: Counts::default(),
