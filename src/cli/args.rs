@@ -190,6 +190,12 @@ pub struct Reconstruct {
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub stats: Option<PathBuf>,
 
+    /// Look for crossing faces in the mesh made, and say how many there are.
+    ///
+    /// That it is closed, manifold and oriented is always looked at.
+    #[arg(long, help_heading = REPORTING)]
+    pub check: bool,
+
     /// Print a summary of the run as one JSON object on standard output,
     /// errors included.
     #[arg(long, help_heading = REPORTING)]
