@@ -220,8 +220,8 @@ fn renumber(poles: Poles, stands_for: &[u32]) -> Poles {
     let of_sample = poles
         .of_sample
         .iter()
-        .map(|own| {
-            own.map(|b| {
+        .map(|pair| {
+            pair.map(|b| {
                 if b == NO_POLE {
                     NO_POLE
                 } else {
