@@ -40,7 +40,7 @@ pub fn label(
     let mut unreached = 0;
     let mut done = 0u64;
     while let Some((p, _)) = queue.pop() {
-        if done % 4096 == 0 {
+        if done.is_multiple_of(4096) {
             context.advance(Stage::Labels, done, count as u64)?;
         }
         done += 1;

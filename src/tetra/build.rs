@@ -34,7 +34,7 @@ pub fn triangulate<C: Conflict>(
     let mut work = Workspace::new(count as usize + 8, start.cells, start.neighbours);
     let mut hint = 0;
     for p in 0..count {
-        if p % REPORT == 0 {
+        if p.is_multiple_of(REPORT) {
             context.advance(stage, p as u64, count as u64)?;
         }
         let cell = walk(test, &work, hint, p, &mut counts);
