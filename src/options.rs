@@ -22,6 +22,13 @@ pub struct Options {
     pub merge: f64,
     /// Polygons as the power diagram has them, or triangles.
     pub faces: Faces,
+    /// How far the surface may move to lose a vertex that is no sample, as a
+    /// share of the local spacing of the samples; in [0, 1]. With 0 the faces
+    /// are those of the power diagram, but for what must be mended.
+    pub flatness: f64,
+    /// Round coordinates to single precision, as files of it hold them, and
+    /// make sure of the surface on those.
+    pub single: bool,
 }
 
 /// The kind of faces wanted.
@@ -43,6 +50,8 @@ impl Default for Options {
             box_factor: 5.0,
             merge: 0.5,
             faces: Faces::Triangles,
+            flatness: 0.05,
+            single: false,
         }
     }
 }
@@ -86,6 +95,8 @@ impl Options {
         let ok = (2.0..=100.0).contains(&self.box_factor);
         within("box_factor", self.box_factor, ok, "a number in [2, 100]")?;
         let ok = (0.0..=1.0).contains(&self.merge);
-        within("merge", self.merge, ok, "a number in [0, 1]")
+        within("merge", self.merge, ok, "a number in [0, 1]")?;
+        let ok = (0.0..=1.0).contains(&self.flatness);
+        within("flatness", self.flatness, ok, "a number in [0, 1]")
     }
 }

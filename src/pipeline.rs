@@ -3,18 +3,17 @@
 use std::time::Instant;
 
 use crate::context::{Context, Stage};
-use crate::delaunay::{delaunay, samples, times_power};
+use crate::delaunay::{delaunay, samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{energy, label, opposites, refine, Evidence, LabelOptions, Neighbours};
-use crate::options::{Faces, Options};
+use crate::options::Options;
 use crate::poles::{poles, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::merge_redundant;
 use crate::stats::Stats;
-use crate::surface::{
-    clean, power_shape, raw_crust, triangulate, CleanOptions, Crust, Placement, PowerShape,
-};
+use crate::surface::stage::Job;
+use crate::surface::{power_shape, Crust, PowerShape};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,7 +101,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.skinny_samples = poles.skinny_samples;
     stats.poles_dropped = poles.dropped;
     stats.poles = poles.balls.len();
-    let poles = merge_redundant(&samples, &delaunay, poles, options.merge);
+    let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge);
     drop(delaunay);
     stats.balls = poles.balls.len();
     clock.lap(Stage::Poles, &mut stats);
@@ -143,46 +142,19 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     clock.lap(Stage::Labels, &mut stats);
 
     // 5. Crust.
-    context.advance(Stage::Crust, 0, 3)?;
-    let lattice = samples.lattice;
-    // Surfaces are made at a size near 1, exactly scaled, so that areas of
-    // tiny or huge inputs are numbers.
-    let unit = lattice.unit_exponent();
-    let resized = |p: Point, e: i32| p.map(|v| times_power(v, e));
-    let place = Placement {
-        touching: &|b| poles.balls.touching(b),
-        sample: &|s| resized(samples.points[s as usize], unit),
-        to_user: &|p| resized(lattice.to_user(p.map(|v| v * step)), unit),
+    let mut sides = labels.sides;
+    let job = Job {
+        samples: &samples,
+        spacing: &spacing,
+        balls: &poles.balls,
+        power: &power,
+        options,
     };
-    let raw = raw_crust(&power, &labels.sides, &place);
-    if raw.balls.is_empty() {
-        return Err(Error::NothingInside {
-            samples: samples.len(),
-        });
-    }
-    stats.power_faces = raw.balls.len();
-    context.advance(Stage::Crust, 1, 3)?;
-    let mut crust = clean(raw, &CleanOptions::default());
-    stats.polygons = crust.mesh.face_count();
-    context.advance(Stage::Crust, 2, 3)?;
-    if options.faces == Faces::Triangles {
-        crust = triangulate(&crust);
-    }
-    if crust.mesh.face_count() == 0 {
-        return Err(Error::NothingInside {
-            samples: samples.len(),
-        });
-    }
-    for v in &mut crust.mesh.vertices {
-        *v = resized(*v, -unit);
-    }
-    stats.vertices = crust.mesh.vertices.len();
-    stats.faces = crust.mesh.face_count();
-    stats.volume = crust.mesh.volume();
-    context.advance(Stage::Crust, 3, 3)?;
+    let crust = job.run(&mut sides, &mut stats, context)?;
+    let lattice = samples.lattice;
     let balls = on_lattice
         .iter()
-        .zip(&labels.sides)
+        .zip(&sides)
         .enumerate()
         .map(|(b, (ball, &side))| PolarBall {
             ball: Ball::new(

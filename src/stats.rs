@@ -35,6 +35,23 @@ pub struct Stats {
     pub power_faces: usize,
     /// Polygons of the crust.
     pub polygons: usize,
+    /// Pairs of triangles that crossed or touched where they share nothing,
+    /// and triangles of no area, before mending.
+    pub crossings_found: usize,
+    /// The same in the result: 0 but for a fault.
+    pub crossings_left: usize,
+    /// Rounds of mending.
+    pub mend_rounds: usize,
+    /// Changes made to mend.
+    pub mended_faces: usize,
+    /// Vertices drawn apart where sheets of the solid touched.
+    pub drawn_apart: usize,
+    /// Vertices that are no samples taken out of flat places.
+    pub flattened: usize,
+    /// Samples taken out of tangles that nothing else undid.
+    pub samples_lost: usize,
+    /// Balls that changed sides because the surface crossed itself there.
+    pub relabelled: usize,
     /// Faces written (triangles unless polygons were asked for).
     pub faces: usize,
     /// Vertices written.
@@ -75,6 +92,14 @@ impl Stats {
             power_cells: 0,
             power_faces: 0,
             polygons: 0,
+            crossings_found: 0,
+            crossings_left: 0,
+            mend_rounds: 0,
+            mended_faces: 0,
+            drawn_apart: 0,
+            flattened: 0,
+            samples_lost: 0,
+            relabelled: 0,
             faces: 0,
             vertices: 0,
             volume: 0.0,

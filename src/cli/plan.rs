@@ -226,6 +226,8 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         } else {
             Faces::Triangles
         },
+        single: args.f32,
+        ..plain
     };
     match options.validate() {
         Ok(()) => Ok(options),

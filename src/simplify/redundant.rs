@@ -25,14 +25,20 @@ use crate::geom::Point;
 use crate::poles::{Balls, Poles, NO_POLE};
 
 /// Merges redundant balls; `share` is the part of the sampling error by which
-/// a ball may miss a sample it stands for, 0 for none.
-pub fn merge_redundant(samples: &Samples, delaunay: &Delaunay, poles: Poles, share: f64) -> Poles {
-    if share <= 0.0 {
-        return poles;
-    }
+/// a ball may miss a sample it stands for, 0 for none. The spacing of the
+/// samples, which this needs, comes with the balls, in steps of the lattice.
+pub fn merge_redundant(
+    samples: &Samples,
+    delaunay: &Delaunay,
+    poles: Poles,
+    share: f64,
+) -> (Poles, Vec<f64>) {
     let graph = SampleGraph::of(delaunay);
+    if share <= 0.0 {
+        return (poles, graph.spacing);
+    }
     let survivors = greedy(samples, &poles, &graph, share);
-    renumber(poles, &survivors)
+    (renumber(poles, &survivors), graph.spacing)
 }
 
 /// The samples as a graph, with the local spacing.
