@@ -61,7 +61,7 @@ fn main() {
     for (k, v) in &st.seconds {
         print!("{k} {v:.3}  ");
     }
-    println!("\npoles {} balls {} hidden {} inner {} unreached {} power cells {} faces raw {} polygons {} faces {} vol {} energy {:?}", st.poles, st.balls, st.hidden_balls, st.inner_balls, st.unreached_balls, st.power_cells, st.power_faces, st.polygons, st.faces, st.volume, st.label_energy);
+    println!("\ncells {} {:?} poles {} balls {} hidden {} inner {} unreached {} power cells {} faces raw {} polygons {} faces {} vol {} energy {:?}", st.delaunay_cells, st.delaunay_predicates, st.poles, st.balls, st.hidden_balls, st.inner_balls, st.unreached_balls, st.power_cells, st.power_faces, st.polygons, st.faces, st.volume, st.label_energy);
     println!("{:?}", st.power_predicates);
     let m = &rec.crust.mesh;
     let dist = |p: [f64; 3]| match kind.as_str() {

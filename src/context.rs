@@ -22,6 +22,8 @@ pub enum Stage {
     Labels,
     /// Faces between inner and outer cells.
     Crust,
+    /// Judging a mesh.
+    Check,
 }
 
 impl Stage {
@@ -34,6 +36,7 @@ impl Stage {
             Stage::Power => "power",
             Stage::Labels => "labels",
             Stage::Crust => "crust",
+            Stage::Check => "check",
         }
     }
 }

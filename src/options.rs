@@ -41,7 +41,7 @@ impl Default for Options {
             sharp: false,
             deep_angle: 113.578_178_478_201_83,
             box_factor: 5.0,
-            merge: 0.3,
+            merge: 0.5,
             faces: Faces::Triangles,
         }
     }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::context::{Context, Stage};
-use crate::delaunay::{delaunay, samples};
+use crate::delaunay::{delaunay, samples, times_power};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{energy, label, opposites, Evidence, LabelOptions, Neighbours};
@@ -143,10 +143,14 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     // 5. Crust.
     context.advance(Stage::Crust, 0, 3)?;
     let lattice = samples.lattice;
+    // Surfaces are made at a size near 1, exactly scaled, so that areas of
+    // tiny or huge inputs are numbers.
+    let unit = lattice.unit_exponent();
+    let resized = |p: Point, e: i32| p.map(|v| times_power(v, e));
     let place = Placement {
         touching: &|b| poles.balls.touching(b),
-        sample: &|s| samples.points[s as usize],
-        to_user: &|p| lattice.to_user([p[0] * step, p[1] * step, p[2] * step]),
+        sample: &|s| resized(samples.points[s as usize], unit),
+        to_user: &|p| resized(lattice.to_user(p.map(|v| v * step)), unit),
     };
     let raw = raw_crust(&power, &labels.sides, &place);
     if raw.balls.is_empty() {
@@ -166,6 +170,9 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         return Err(Error::NothingInside {
             samples: samples.len(),
         });
+    }
+    for v in &mut crust.mesh.vertices {
+        *v = resized(*v, -unit);
     }
     stats.vertices = crust.mesh.vertices.len();
     stats.faces = crust.mesh.face_count();

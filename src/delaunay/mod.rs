@@ -9,6 +9,7 @@
 mod samples;
 mod voronoi;
 
+pub(crate) use samples::times_power;
 pub use samples::{samples, Lattice, Samples};
 pub use voronoi::{circumcentre, Centre};
 

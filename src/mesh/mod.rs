@@ -1,4 +1,27 @@
-//! Surface meshes: vertices and faces by index.
+//! Surface meshes: vertices and faces by index, and what can be asked of them.
+//!
+//! [`check()`] judges a mesh exactly and returns everything it finds;
+//! [`components`] and [`component_volumes`] take it apart; [`Surface`] answers
+//! distances to it.
+
+mod bvh;
+mod check;
+mod crossing;
+mod distance;
+mod frame;
+mod intersect;
+mod measure;
+mod nesting;
+mod polygon;
+mod report;
+mod soup;
+mod topology;
+mod wide;
+
+pub use check::{check, CheckOptions};
+pub use distance::Surface;
+pub use measure::{component_volumes, components};
+pub use report::{Counts, Finding, Report, Shell};
 
 use crate::geom::Point;
 

@@ -31,7 +31,9 @@ pub struct CleanOptions {
     /// the units of the input. Samples stay where they are.
     pub tolerance: f64,
     /// Where several sheets touch in a point, draw all but one of them back
-    /// by this length. With 0 their vertices coincide.
+    /// by this length. With 0 their vertices coincide, and tests that know
+    /// vertices only by index report the sheets as crossing. A file of `f32`
+    /// must still tell the vertices apart.
     pub gap: f64,
 }
 

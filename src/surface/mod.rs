@@ -10,12 +10,15 @@ mod flat;
 mod halfedges;
 mod pinch;
 mod polygon;
+#[cfg(test)]
+mod polygon_tests;
 pub mod raw;
 mod shape;
 mod short;
 #[cfg(test)]
 mod tests;
 mod triangulate;
+mod unfold;
 pub use clean::{clean, CleanOptions};
 pub use extract::{raw_crust, Placement};
 pub use raw::{Crust, RawCrust, NONE};

@@ -14,6 +14,7 @@
 //! starts.
 
 use super::flat::{collinear, main_axis, orient, vector_area};
+use super::unfold::least_folded;
 use crate::geom::vec3::{cross, dot, norm, sub};
 use crate::geom::Point;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
@@ -133,7 +134,8 @@ impl PolygonTriangulator {
         if n as usize <= 8 * LARGE && self.clip_ears(allowed) {
             return self.flip(allowed);
         }
-        false
+        self.triangles.clear();
+        least_folded(&self.points, allowed, &mut self.triangles)
     }
 
     fn turn(&self, a: u32, b: u32, c: u32) -> f64 {

@@ -11,7 +11,7 @@ use super::contract::Places;
 use super::flat::vector_area;
 use super::halfedges::HalfEdges;
 use super::raw::NONE;
-use crate::geom::vec3::{dist_sq, dot};
+use crate::geom::vec3::{dist_sq, dot, norm};
 
 /// Contracts edges not longer than `tolerance`; returns half-edges of all
 /// faces that changed, which the caller must cut (see `contract`).
@@ -31,7 +31,7 @@ pub(crate) fn contract_short_edges(
         let (from, to) = (surface.tail(h), surface.head(h));
         if dist_sq(places.at(from), places.at(to)) > tolerance * tolerance
             || !links_meet_only_in_triangles(surface, h)
-            || turns_a_face_over(surface, places, h)
+            || turns_a_face_over(surface, places, h, tolerance)
         {
             continue;
         }
@@ -94,8 +94,9 @@ fn links_meet_only_in_triangles(surface: &HalfEdges, h: u32) -> bool {
     common == triangles
 }
 
-/// Whether moving the tail of `h` to its head turns a face over.
-fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32) -> bool {
+/// Whether moving the tail of `h` to its head turns a face over that is wider
+/// than the tolerance; narrower ones may have been upside down by rounding.
+fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32, tolerance: f64) -> bool {
     let (from, to) = (surface.tail(h), surface.head(h));
     let area = |first: u32, moved: bool| {
         let mut at = first;
@@ -114,12 +115,74 @@ fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32) -> bool {
     let mut g = h;
     loop {
         let dies = (g == h || g == surface.next(twin)) && is_triangle(surface, g);
-        if !dies && dot(area(g, false), area(g, true)) <= 0.0 {
-            return true;
+        let before = area(g, false);
+        if !dies && dot(before, area(g, true)) <= 0.0 {
+            let (mut longest, mut f) = (0.0, g);
+            loop {
+                longest =
+                    dist_sq(places.at(surface.tail(f)), places.at(surface.head(f))).max(longest);
+                f = surface.next(f);
+                if f == g {
+                    break;
+                }
+            }
+            if norm(before) > tolerance * longest.sqrt() {
+                return true;
+            }
         }
         g = surface.around(g);
         if g == h {
             return false;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::contract::half_edges;
+    use super::super::raw::RawCrust;
+    use super::*;
+
+    /// A 4 by 4 torus of quadrilaterals is too coarse to lose many edges: all
+    /// that may go are gone without a change of its Euler characteristic.
+    #[test]
+    fn topology_stays_whatever_the_tolerance() {
+        let mut raw = RawCrust {
+            starts: vec![0],
+            ..RawCrust::default()
+        };
+        let id = |i: u32, j: u32| (i % 4) * 4 + j % 4;
+        for i in 0..4 {
+            for j in 0..4 {
+                raw.positions
+                    .push([f64::from(i), f64::from(j), f64::from(i * j)]);
+                raw.corners
+                    .extend([id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]);
+                raw.starts.push(raw.corners.len() as u32);
+                // The sides look down, right, up and left.
+                let side = |i: u32, j: u32, k: u32| 4 * id(i, j) + k;
+                raw.twins.extend([
+                    side(i, j + 3, 2),
+                    side(i + 1, j, 3),
+                    side(i, j + 1, 0),
+                    side(i + 3, j, 1),
+                ]);
+            }
+        }
+        raw.samples = vec![NONE; 16];
+        let (places, place_of) = Places::of(&raw);
+        let mut surface = half_edges(&raw, &place_of);
+        let mut cutter = super::super::contract::Cutter::new(16);
+        let contracted = contract_short_edges(&mut surface, &places, 1e9, |surface, h| {
+            cutter.cut(surface, h);
+        });
+        assert!(contracted > 0);
+        let edges = (0..surface.len() as u32)
+            .filter(|&h| surface.alive(h))
+            .count()
+            / 2;
+        let (vertices, faces) = (surface.fans().1 as usize, surface.faces().len());
+        assert_eq!(vertices + faces, edges);
+        assert_eq!(vertices, 16 - contracted);
     }
 }

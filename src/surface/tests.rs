@@ -59,13 +59,7 @@ fn both(raw: RawCrust, options: &CleanOptions) -> (Crust, Crust) {
     let triangles = triangulate(&polygons);
     assert_eq!(check(&triangles), []);
     assert!(triangles.mesh.faces().all(|face| face.len() == 3));
-    let (v, w) = (polygons.mesh.volume(), triangles.mesh.volume());
-    assert!((v - w).abs() <= 1e-9 * (1.0 + v.abs()) || !planar(&polygons));
     (polygons, triangles)
-}
-
-fn planar(crust: &Crust) -> bool {
-    crust.mesh.faces().all(|face| face.len() == 3)
 }
 
 fn euler(crust: &Crust) -> i64 {
@@ -251,8 +245,8 @@ fn a_short_edge_is_contracted_with_a_tolerance() {
     assert_eq!(polygons.mesh.volume(), 1.0);
 }
 
-/// Like a power crust: the dual of a triangulation, here of a torus or of
-/// several spheres, with random flips; so every vertex has three faces.
+/// Like a power crust: the dual of a triangulation, here of a torus with
+/// random flips; so every vertex has three faces.
 fn random_dual(random: &mut Random) -> (usize, Vec<Vec<u32>>) {
     let (_, quads) = torus(3 + random.below(4), 3 + random.below(4));
     let mut triangles: Vec<[u32; 3]> = Vec::new();
@@ -286,7 +280,7 @@ fn random_dual(random: &mut Random) -> (usize, Vec<Vec<u32>>) {
     // Dual: triangles become vertices, vertices become faces.
     let mut faces = Vec::new();
     let mut done = BTreeMap::new();
-    for (&(v, first), _) in &map {
+    for &(v, first) in map.keys() {
         if done.insert(v, ()).is_some() {
             continue;
         }

@@ -45,7 +45,10 @@ pub fn triangulate(crust: &Crust) -> Crust {
             for t in &polygon.triangles {
                 let t = t.map(|c| face[c as usize]);
                 for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-                    joined.insert(a, b);
+                    // Most are sides of the face, known already.
+                    if a < b {
+                        joined.insert(a, b);
+                    }
                 }
                 push(&mut out, t);
             }

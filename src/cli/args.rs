@@ -1,0 +1,270 @@
+//! What was said on the command line, recorded and not yet judged: see
+//! [`super::plan`] for what it means.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use powercrust::io::{AxisFormat, CloudFormat, MeshFormat};
+use powercrust::Options;
+
+use super::formats::dotted;
+
+const EXAMPLES: &str = "\
+Examples:
+  powercrust points.ply -o crust.ply            a watertight mesh
+  powercrust points.ply --sharp -o part.ply     a machine part with sharp edges
+  powercrust points.ply --lambda 0.3 -o crust.ply
+                                                a scan with some noise
+  powercrust points.xyz --mat axis.ma           the medial axis alone
+  cat points.xyz | powercrust - -o - --output-format obj > crust.obj
+  powercrust check crust.ply                    is a mesh fit for use?";
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    done (check: the mesh is sound)
+  1    the input cannot be reconstructed: bad data, or no solid (check: the
+       mesh is not sound)
+  2    wrong usage
+  3    a file cannot be read or written, or is truncated or malformed
+  101  a bug in powercrust
+  130  interrupted";
+
+fn formats_help() -> String {
+    format!(
+        "\
+Formats:
+  points       {}
+               (other names: by the first bytes)
+  mesh         {}
+  medial axis  {}
+  poles        .ply",
+        dotted(CloudFormat::extensions()),
+        dotted(MeshFormat::extensions()),
+        dotted(AxisFormat::extensions()),
+    )
+}
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  powercrust check crust.ply
+  powercrust check crust.ply --json | jq .genus";
+
+/// Watertight surface and medial axis of a point cloud.
+///
+/// Points go in, a closed and oriented mesh comes out. No normals are needed
+/// and no option is required.
+#[derive(Debug, Parser)]
+#[command(
+    name = "powercrust",
+    version,
+    max_term_width = 100,
+    args_conflicts_with_subcommands = true,
+    arg_required_else_help = true,
+    disable_help_subcommand = true,
+    after_help = "See --help for examples, file formats and exit codes.",
+    after_long_help = format!("{EXAMPLES}\n\n{}\n\n{EXIT_CODES}", formats_help()),
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    #[command(flatten)]
+    pub reconstruct: Reconstruct,
+    /// Print a man page or shell completions and exit.
+    #[arg(long, value_enum, value_name = "WHAT", exclusive = true, help_heading = REPORTING)]
+    pub generate: Option<Generate>,
+}
+
+impl Cli {
+    /// The command as clap knows it, for man page and completions.
+    pub fn definition() -> clap::Command {
+        Cli::command()
+    }
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Say whether a mesh is closed, manifold, oriented and free of crossings.
+    #[command(after_help = CHECK_EXAMPLES, after_long_help = format!("{CHECK_EXAMPLES}\n\n{EXIT_CODES}"))]
+    Check(Check),
+    /// Simplify a medial axis (not available in this version).
+    #[command(hide = true, disable_help_flag = true)]
+    SimplifyMat {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<std::ffi::OsString>,
+    },
+}
+
+const FILES: &str = "Input and output";
+const METHOD: &str = "Reconstruction";
+const EXTRA: &str = "More results";
+const REPORTING: &str = "Running and reporting";
+
+#[derive(Debug, Args)]
+pub struct Reconstruct {
+    /// Points to read; `-` for standard input.
+    ///
+    /// A mesh file is taken as its vertices. The format follows from the
+    /// extension, for standard input from the first bytes.
+    #[arg(value_name = "POINTS")]
+    pub input: Option<PathBuf>,
+
+    /// Mesh to write; `-` for standard output.
+    ///
+    /// The format follows from the extension. The file appears whole or not
+    /// at all: an older file of that name stays until the new one is complete.
+    #[arg(short, long, value_name = "MESH", help_heading = FILES)]
+    pub output: Option<PathBuf>,
+
+    /// Format of the input, whatever its name.
+    #[arg(long, value_name = "FORMAT", help_heading = FILES)]
+    pub input_format: Option<String>,
+
+    /// Format of the mesh, whatever its name.
+    #[arg(long, value_name = "FORMAT", help_heading = FILES)]
+    pub output_format: Option<String>,
+
+    /// Write PLY as text.
+    #[arg(long, help_heading = FILES)]
+    pub ascii: bool,
+
+    /// Write PLY coordinates with 32 bits instead of 64.
+    #[arg(long, help_heading = FILES)]
+    pub f32: bool,
+
+    /// Significant digits of reals in text formats, 1 to 17.
+    ///
+    /// By default as many as it takes to read the same number back.
+    #[arg(long, value_name = "DIGITS", value_parser = clap::value_parser!(u8).range(1..=17), help_heading = FILES)]
+    pub precision: Option<u8>,
+
+    /// Drop points that are NaN or infinite instead of refusing the input.
+    #[arg(long, help_heading = FILES)]
+    pub skip_invalid: bool,
+
+    /// Ignore poles of samples whose Voronoi cell is too fat: 0 < L <= 1.
+    ///
+    /// Your estimate of how densely the surface is sampled, as the distance
+    /// between samples over the distance to the medial axis. Helps with noise
+    /// and sharp edges. By default every pole is kept.
+    #[arg(long, value_name = "L", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub lambda: Option<f64>,
+
+    /// Extend faces to sharp edges and corners, for machine parts.
+    ///
+    /// Drops both poles of a sample whose cell is too fat. Takes --lambda
+    /// 0.4 unless you say otherwise.
+    #[arg(long, help_heading = METHOD)]
+    pub sharp: bool,
+
+    #[arg(long, help = deep_angle_help(), value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub deep_angle: Option<f64>,
+
+    #[arg(long, help = box_factor_help(), value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub box_factor: Option<f64>,
+
+    #[arg(long, help = merge_help(), value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub merge: Option<f64>,
+
+    /// Write triangles (this is the default).
+    #[arg(long, overrides_with = "polygons", help_heading = METHOD)]
+    pub triangulate: bool,
+
+    /// Write the polygons of the power diagram instead of triangles.
+    #[arg(long, overrides_with = "triangulate", help_heading = METHOD)]
+    pub polygons: bool,
+
+    /// Write the inner medial axis.
+    #[arg(long, value_name = "FILE", help_heading = EXTRA)]
+    pub mat: Option<PathBuf>,
+
+    /// Write the outer medial axis.
+    #[arg(long, value_name = "FILE", help_heading = EXTRA)]
+    pub outer_mat: Option<PathBuf>,
+
+    /// Write all polar balls with radius and side, as PLY.
+    #[arg(long, value_name = "FILE", help_heading = EXTRA)]
+    pub poles: Option<PathBuf>,
+
+    /// Write counts, timings and options as JSON; `-` for standard output.
+    #[arg(long, value_name = "FILE", help_heading = EXTRA)]
+    pub stats: Option<PathBuf>,
+
+    /// Print a summary of the run as one JSON object on standard output,
+    /// errors included.
+    #[arg(long, help_heading = REPORTING)]
+    pub json: bool,
+
+    /// Threads to use, by default all. The result does not depend on it.
+    #[arg(long, value_name = "N", help_heading = REPORTING)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Print nothing but errors.
+    #[arg(short, long, conflicts_with = "verbose", help_heading = REPORTING)]
+    pub quiet: bool,
+
+    /// Say more: -v options in effect and times, -vv everything counted.
+    #[arg(short, long, action = ArgAction::Count, help_heading = REPORTING)]
+    pub verbose: u8,
+}
+
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Mesh to read; `-` for standard input.
+    #[arg(value_name = "MESH")]
+    pub mesh: PathBuf,
+
+    /// Format of the mesh, whatever its name.
+    #[arg(long, value_name = "FORMAT")]
+    pub input_format: Option<String>,
+
+    /// Print the findings as one JSON object on standard output.
+    #[arg(long)]
+    pub json: bool,
+
+    /// Threads to use, by default all.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Print nothing; only the exit code tells.
+    #[arg(short, long, conflicts_with = "json")]
+    pub quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Generate {
+    /// A man page in roff.
+    Man,
+    /// Completions for bash.
+    CompleteBash,
+    /// Completions for zsh.
+    CompleteZsh,
+    /// Completions for fish.
+    CompleteFish,
+}
+
+// The library's defaults are stated from the library, not a second time here.
+
+fn deep_angle_help() -> String {
+    let default = Options::default().deep_angle;
+    format!("Angle above which two balls are taken to be on one side: 90 < DEG < 180, by default {default:.2}")
+}
+
+fn box_factor_help() -> String {
+    let default = Options::default().box_factor;
+    format!("Size of the frame over that of the points' box: 2 to 100, by default {default}")
+}
+
+fn merge_help() -> String {
+    let default = Options::default().merge;
+    format!("Merge balls when the surface moves by less than this share of the sampling error: 0 to 1, by default {default}")
+}
+
+/// Reads a finite number. (clap's own reading of negative numbers refuses
+/// `-1e-3` and `-.5`, hence `allow_hyphen_values` above.)
+fn real(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("expected a number".to_owned()),
+    }
+}

@@ -1,0 +1,330 @@
+//! What the arguments mean, and whether it can be done: everything that can be
+//! refused is refused here, before points are read.
+
+use std::fs;
+use std::io::IsTerminal;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+use powercrust::io::{AxisFormat, CloudFormat, MeshFormat, ReadOptions, WriteOptions};
+use powercrust::{Error, Faces, Options};
+
+use super::args::Reconstruct;
+use super::fail::{name, reason, Failure};
+use super::formats::{axis_format, extension, input_format, mesh_format, poles_format};
+use super::output::Target;
+use super::show::Talk;
+
+/// The skinniness bound `--sharp` takes when none is given: near it the error
+/// at edges is least (a cube of 10,000 random samples: 0.0005 with 0.4, 0.015
+/// with 0.5, 0.0008 with 0.3).
+const SHARP_LAMBDA: f64 = 0.4;
+
+/// A run to be made.
+#[derive(Debug)]
+pub struct Plan {
+    pub input: PathBuf,
+    /// `None`: judged by the bytes.
+    pub input_format: Option<CloudFormat>,
+    pub read: ReadOptions,
+    pub options: Options,
+    pub threads: Option<NonZeroUsize>,
+    pub write: WriteOptions,
+    pub mesh: Option<Out<MeshFormat>>,
+    pub inner_axis: Option<Out<AxisFormat>>,
+    pub outer_axis: Option<Out<AxisFormat>>,
+    pub poles: Option<Out<()>>,
+    pub stats: Option<Out<()>>,
+    pub json: bool,
+    pub talk: Talk,
+    /// What was decided for the user, for `-v`.
+    pub decisions: Vec<String>,
+}
+
+/// A result to be written.
+#[derive(Debug)]
+pub struct Out<F> {
+    pub path: PathBuf,
+    pub target: Target,
+    pub format: F,
+}
+
+impl Plan {
+    pub fn new(args: Reconstruct) -> Result<Plan, Failure> {
+        let mut decisions = Vec::new();
+        let Some(input) = args.input.clone() else {
+            return Err(Failure::usage("no points given")
+                .hint("powercrust points.ply -o crust.ply (see powercrust --help)"));
+        };
+        let options = options(&args, &mut decisions)?;
+        let input_format = input_format(&input, args.input_format.as_deref())?;
+        check_input(&input)?;
+        let results = [
+            &args.output,
+            &args.mat,
+            &args.outer_mat,
+            &args.poles,
+            &args.stats,
+        ];
+        if !args.json && results.iter().all(|path| path.is_none()) {
+            return Err(
+                Failure::usage("nowhere to write the mesh: -o is missing").hint(suggestion(&input))
+            );
+        }
+
+        let plan = Plan {
+            mesh: out(&args.output, |path| {
+                mesh_format(path, args.output_format.as_deref())
+            })?,
+            inner_axis: out(&args.mat, |path| axis_format(path, "--mat"))?,
+            outer_axis: out(&args.outer_mat, |path| axis_format(path, "--outer-mat"))?,
+            poles: out(&args.poles, poles_format)?,
+            stats: out(&args.stats, |_| Ok(()))?,
+            write: WriteOptions {
+                ascii: args.ascii,
+                float32: args.f32,
+                digits: args.precision,
+                comments: comments(&options),
+            },
+            read: ReadOptions {
+                skip_invalid: args.skip_invalid,
+            },
+            input,
+            input_format,
+            options,
+            threads: args.threads,
+            json: args.json,
+            talk: Talk::new(args.quiet, args.verbose),
+            decisions,
+        };
+        plan.check_places()?;
+        plan.check_idle_flags(&args)?;
+        Ok(plan)
+    }
+
+    /// Path and target of every result.
+    fn outs(&self) -> Vec<(&Path, &Target)> {
+        fn of<F>(out: &Option<Out<F>>) -> Option<(&Path, &Target)> {
+            out.as_ref().map(|out| (out.path.as_path(), &out.target))
+        }
+        [
+            of(&self.mesh),
+            of(&self.inner_axis),
+            of(&self.outer_axis),
+            of(&self.poles),
+            of(&self.stats),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// No two results in one place, none over the input, no bytes on a screen.
+    fn check_places(&self) -> Result<(), Failure> {
+        let outs = self.outs();
+        if let Some(out) = &self.mesh {
+            let binary =
+                matches!(out.format, MeshFormat::Ply | MeshFormat::Stl) && !self.write.ascii;
+            if binary && out.target == Target::Stdout && std::io::stdout().is_terminal() {
+                return Err(Failure::usage("a binary mesh would go to the terminal")
+                    .hint("redirect it, or add --ascii or --output-format obj"));
+            }
+        }
+        let streams = outs.iter().filter(|(_, t)| **t == Target::Stdout).count();
+        if streams + usize::from(self.json) > 1 {
+            return Err(
+                Failure::usage("more than one result would go to standard output")
+                    .hint("send one of -o -, --stats - and --json to a file, or leave it out"),
+            );
+        }
+        let input = identity(&self.input);
+        let mut taken: Vec<PathBuf> = Vec::new();
+        for (path, target) in outs {
+            if !matches!(target, Target::File(_)) {
+                continue;
+            }
+            let place = identity(path);
+            if place == input {
+                return Err(Failure::usage(format!(
+                    "{}: this is the input, it would be overwritten",
+                    path.display()
+                ))
+                .hint(suggestion(&self.input)));
+            }
+            if taken.contains(&place) {
+                return Err(Failure::usage(format!(
+                    "{}: two results would be written to this file",
+                    path.display()
+                ))
+                .hint("give each result a file of its own"));
+            }
+            taken.push(place);
+        }
+        Ok(())
+    }
+
+    /// A flag that would change nothing is a misunderstanding.
+    fn check_idle_flags(&self, args: &Reconstruct) -> Result<(), Failure> {
+        let mesh = self.mesh.as_ref().map(|out| out.format);
+        let axes: Vec<AxisFormat> = [&self.inner_axis, &self.outer_axis]
+            .into_iter()
+            .flatten()
+            .map(|out| out.format)
+            .collect();
+        let any_axis = |formats: &[AxisFormat]| axes.iter().any(|f| formats.contains(f));
+        let ply =
+            mesh == Some(MeshFormat::Ply) || any_axis(&[AxisFormat::Ply]) || self.poles.is_some();
+        let stl = mesh == Some(MeshFormat::Stl);
+        let text = ((ply || stl) && args.ascii)
+            || matches!(
+                mesh,
+                Some(MeshFormat::Obj | MeshFormat::Off | MeshFormat::Json)
+            )
+            || any_axis(&[AxisFormat::Ma, AxisFormat::Obj, AxisFormat::Json]);
+        let idle = [
+            (args.ascii && !ply && !stl, "--ascii", "PLY and STL files"),
+            (args.f32 && !ply, "--f32", "PLY files"),
+            (
+                args.precision.is_some() && !text,
+                "--precision",
+                "text formats (OBJ, OFF, MA, JSON, and PLY or STL with --ascii)",
+            ),
+            (
+                args.output_format.is_some() && mesh.is_none(),
+                "--output-format",
+                "the mesh, which needs -o",
+            ),
+        ];
+        match idle.iter().find(|(is_idle, ..)| *is_idle) {
+            Some((_, flag, where_)) => Err(Failure::usage(format!(
+                "{flag} would have no effect: it applies to {where_}"
+            ))
+            .hint(format!("leave {flag} out"))),
+            None => Ok(()),
+        }
+    }
+}
+
+fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, Failure> {
+    let plain = Options::default();
+    let mut lambda = args.lambda;
+    if args.sharp && lambda.is_none() {
+        lambda = Some(SHARP_LAMBDA);
+        decisions.push(format!("--sharp without --lambda: taking {SHARP_LAMBDA}"));
+    }
+    let options = Options {
+        lambda,
+        sharp: args.sharp,
+        deep_angle: args.deep_angle.unwrap_or(plain.deep_angle),
+        box_factor: args.box_factor.unwrap_or(plain.box_factor),
+        merge: args.merge.unwrap_or(plain.merge),
+        faces: if args.polygons {
+            Faces::Polygons
+        } else {
+            Faces::Triangles
+        },
+    };
+    match options.validate() {
+        Ok(()) => Ok(options),
+        Err(Error::Option {
+            name,
+            value,
+            expected,
+        }) => Err(out_of_range(name, value, expected)),
+        Err(other) => Err(Failure::usage(other.to_string())),
+    }
+}
+
+/// An option out of range, by the name of its flag.
+pub fn out_of_range(name: &str, value: f64, expected: &str) -> Failure {
+    Failure::usage(format!(
+        "--{} is {value}: expected {expected}",
+        name.replace('_', "-")
+    ))
+}
+
+/// Lines for the head of the files: enough to make them again.
+fn comments(options: &Options) -> Vec<String> {
+    let options = serde_json::to_string(options).expect("options are plain values");
+    vec![
+        format!("made by powercrust {}", env!("CARGO_PKG_VERSION")),
+        format!("options {options}"),
+    ]
+}
+
+fn out<F>(
+    path: &Option<PathBuf>,
+    format: impl FnOnce(&Path) -> Result<F, Failure>,
+) -> Result<Option<Out<F>>, Failure> {
+    let Some(path) = path else {
+        return Ok(None);
+    };
+    if path.is_dir() {
+        Target::judge(path)?;
+    }
+    Ok(Some(Out {
+        format: format(path)?,
+        target: Target::judge(path)?,
+        path: path.clone(),
+    }))
+}
+
+/// The points are there and can be opened.
+pub fn check_input(path: &Path) -> Result<(), Failure> {
+    if path.as_os_str() == "-" {
+        return Ok(());
+    }
+    if path.is_dir() {
+        return Err(Failure::file(path, "cannot read: this is a directory")
+            .hint("name the file with the points"));
+    }
+    match fs::File::open(path) {
+        Ok(_) => Ok(()),
+        Err(error) => {
+            let failure = Failure::file(path, format!("cannot read: {}", reason(&error)));
+            Err(match error.kind() {
+                std::io::ErrorKind::NotFound => failure.hint(match extension(path) {
+                    None => "see powercrust --help for the commands and options",
+                    Some(_) => "check the name and the directory",
+                }),
+                _ => failure,
+            })
+        }
+    }
+}
+
+/// The place a path names, whether or not there is a file yet.
+fn identity(path: &Path) -> PathBuf {
+    if let Ok(place) = fs::canonicalize(path) {
+        return place;
+    }
+    let parent = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    match (fs::canonicalize(parent), path.file_name()) {
+        (Ok(parent), Some(file)) => parent.join(file),
+        _ => path.to_owned(),
+    }
+}
+
+/// The full command that would have worked.
+fn suggestion(input: &Path) -> String {
+    let stem = match input.file_stem() {
+        Some(stem) if input.as_os_str() != "-" => format!("{}-crust.ply", stem.to_string_lossy()),
+        _ => "crust.ply".to_owned(),
+    };
+    let quoted = |text: String| {
+        let plain = |c: char| c.is_alphanumeric() || "-_./".contains(c);
+        if text.chars().all(plain) {
+            text
+        } else {
+            format!("'{}'", text.replace('\'', r"'\''"))
+        }
+    };
+    let input = match name(input) {
+        stream if stream == "standard input" => "-".to_owned(),
+        path => quoted(path),
+    };
+    format!("powercrust {input} -o {}", quoted(stem))
+}

@@ -1,0 +1,208 @@
+//! The file formats by name: from an extension, or from the bytes themselves.
+
+use super::scan;
+
+/// A format points can be read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum CloudFormat {
+    /// Stanford PLY, text or binary.
+    Ply,
+    /// Wavefront OBJ: its `v` lines.
+    Obj,
+    /// Geomview OFF: its vertices.
+    Off,
+    /// Lines of numbers: XYZ, TXT, CSV, PTS, ASC, PWN, XYZN.
+    Text,
+    /// STL, text or binary: the distinct corners of its triangles.
+    Stl,
+    /// A NumPy array of shape (n, 3) or wider.
+    Npy,
+}
+
+const CLOUD: &[(&str, CloudFormat)] = &[
+    ("ply", CloudFormat::Ply),
+    ("obj", CloudFormat::Obj),
+    ("off", CloudFormat::Off),
+    ("coff", CloudFormat::Off),
+    ("noff", CloudFormat::Off),
+    ("xyz", CloudFormat::Text),
+    ("xyzn", CloudFormat::Text),
+    ("txt", CloudFormat::Text),
+    ("csv", CloudFormat::Text),
+    ("tsv", CloudFormat::Text),
+    ("pts", CloudFormat::Text),
+    ("asc", CloudFormat::Text),
+    ("pwn", CloudFormat::Text),
+    ("stl", CloudFormat::Stl),
+    ("npy", CloudFormat::Npy),
+];
+
+fn by_extension<F: Copy>(table: &[(&str, F)], extension: &str) -> Option<F> {
+    let extension = extension.trim_start_matches('.');
+    table
+        .iter()
+        .find(|(e, _)| e.eq_ignore_ascii_case(extension))
+        .map(|&(_, f)| f)
+}
+
+impl CloudFormat {
+    /// The format of files with this extension (`"ply"` or `".PLY"`); `None`
+    /// for extensions no reader claims.
+    pub fn from_extension(extension: &str) -> Option<CloudFormat> {
+        by_extension(CLOUD, extension)
+    }
+
+    /// Every extension that [`CloudFormat::from_extension`] knows, lower case,
+    /// without the dot.
+    pub fn extensions() -> impl Iterator<Item = &'static str> {
+        CLOUD.iter().map(|&(e, _)| e)
+    }
+
+    /// The format a file without a name most likely has, judged by its first
+    /// kilobytes. Never fails: what nothing else claims is
+    /// [`CloudFormat::Text`], whose reader then says what it cannot read.
+    pub fn sniff(bytes: &[u8]) -> CloudFormat {
+        let bytes = scan::without_bom(bytes);
+        let head = &bytes[..bytes.len().min(8192)];
+        let word = scan::first_word(head);
+        if word.eq_ignore_ascii_case(b"ply") {
+            return CloudFormat::Ply;
+        }
+        if bytes.starts_with(b"\x93NUMPY") {
+            return CloudFormat::Npy;
+        }
+        if super::stl::looks_binary(bytes) || word.eq_ignore_ascii_case(b"solid") {
+            return CloudFormat::Stl;
+        }
+        let lines = || head.split(|&b| b == b'\n' || b == b'\r');
+        let data = |l: &&[u8]| !matches!(l.trim_ascii_start().first(), None | Some(b'#'));
+        if let Some(first) = lines().find(data) {
+            if super::off::keyword(scan::first_word(first)).is_some() {
+                return CloudFormat::Off;
+            }
+        }
+        let vertex = |l: &[u8]| {
+            let word = scan::first_word(l);
+            word == b"v" || word == b"vn"
+        };
+        if lines().any(vertex) {
+            return CloudFormat::Obj;
+        }
+        CloudFormat::Text
+    }
+
+    /// A name for people, in capitals as usual: `PLY`, `text`, ...
+    pub fn name(self) -> &'static str {
+        match self {
+            CloudFormat::Ply => "PLY",
+            CloudFormat::Obj => "OBJ",
+            CloudFormat::Off => "OFF",
+            CloudFormat::Text => "text",
+            CloudFormat::Stl => "STL",
+            CloudFormat::Npy => "NPY",
+        }
+    }
+}
+
+/// A format meshes are written to and read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// Stanford PLY: keeps every attribute.
+    Ply,
+    /// Wavefront OBJ: keeps normals and colours.
+    Obj,
+    /// Geomview OFF: keeps colours.
+    Off,
+    /// STL: triangles in 32-bit floats, no shared vertices, no attributes.
+    Stl,
+    /// One JSON object: `vertices`, `faces` and the attributes by name.
+    Json,
+}
+
+const MESH: &[(&str, MeshFormat)] = &[
+    ("ply", MeshFormat::Ply),
+    ("obj", MeshFormat::Obj),
+    ("off", MeshFormat::Off),
+    ("stl", MeshFormat::Stl),
+    ("json", MeshFormat::Json),
+];
+
+impl MeshFormat {
+    /// The format of files with this extension (`"ply"` or `".PLY"`).
+    pub fn from_extension(extension: &str) -> Option<MeshFormat> {
+        by_extension(MESH, extension)
+    }
+
+    /// Every extension that [`MeshFormat::from_extension`] knows.
+    pub fn extensions() -> impl Iterator<Item = &'static str> {
+        MESH.iter().map(|&(e, _)| e)
+    }
+
+    /// The mesh format a file without a name most likely has; `None` when it
+    /// looks like bare points.
+    pub fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
+        if scan::without_bom(bytes)
+            .trim_ascii_start()
+            .starts_with(b"{")
+        {
+            return Some(MeshFormat::Json);
+        }
+        match CloudFormat::sniff(bytes) {
+            CloudFormat::Ply => Some(MeshFormat::Ply),
+            CloudFormat::Obj => Some(MeshFormat::Obj),
+            CloudFormat::Off => Some(MeshFormat::Off),
+            CloudFormat::Stl => Some(MeshFormat::Stl),
+            CloudFormat::Text | CloudFormat::Npy => None,
+        }
+    }
+
+    /// A name for people, in capitals.
+    pub fn name(self) -> &'static str {
+        match self {
+            MeshFormat::Ply => "PLY",
+            MeshFormat::Obj => "OBJ",
+            MeshFormat::Off => "OFF",
+            MeshFormat::Stl => "STL",
+            MeshFormat::Json => "JSON",
+        }
+    }
+}
+
+/// A format medial axes are written to and read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum AxisFormat {
+    /// The text format of the medial mesh papers: `v x y z r`, `e i j`,
+    /// `f i j k`.
+    Ma,
+    /// PLY with a radius at each vertex, edges, faces and tetrahedra.
+    Ply,
+    /// OBJ for looking at: `v`, `l`, `f`; no radii, so it cannot be read back.
+    Obj,
+    /// One JSON object: `balls`, `ids`, `edges`, `triangles`, `tetrahedra`.
+    Json,
+}
+
+const AXIS: &[(&str, AxisFormat)] = &[
+    ("ma", AxisFormat::Ma),
+    ("ply", AxisFormat::Ply),
+    ("obj", AxisFormat::Obj),
+    ("json", AxisFormat::Json),
+];
+
+impl AxisFormat {
+    /// The format of files with this extension (`"ma"` or `".MA"`).
+    pub fn from_extension(extension: &str) -> Option<AxisFormat> {
+        by_extension(AXIS, extension)
+    }
+
+    /// Every extension that [`AxisFormat::from_extension`] knows.
+    pub fn extensions() -> impl Iterator<Item = &'static str> {
+        AXIS.iter().map(|&(e, _)| e)
+    }
+}

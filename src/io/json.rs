@@ -1,0 +1,215 @@
+//! JSON for scripts: meshes and medial axes as plain lists of numbers.
+
+use super::attributes::{Attribute, AttributeValues, MeshAttributes, WriteOptions};
+use super::buffer::Buffer;
+use super::error::{Place, ReadError, WriteError};
+use super::sink::{check_count, check_finite, FaceSink};
+use crate::mesh::PolygonMesh;
+use crate::surface::{PowerShape, NONE};
+use serde::de::DeserializeOwned;
+use std::io::Write;
+
+#[derive(serde::Deserialize)]
+struct MeshFile {
+    vertices: Vec<[f64; 3]>,
+    #[serde(default)]
+    faces: Vec<Vec<i64>>,
+}
+
+#[derive(serde::Deserialize)]
+struct AxisFile {
+    balls: Vec<[f64; 4]>,
+    #[serde(default)]
+    ids: Vec<u32>,
+    #[serde(default)]
+    edges: Vec<[u32; 2]>,
+    #[serde(default)]
+    triangles: Vec<[u32; 3]>,
+    #[serde(default)]
+    tetrahedra: Vec<[u32; 4]>,
+}
+
+fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, ReadError> {
+    serde_json::from_slice(super::scan::without_bom(bytes)).map_err(|e| {
+        let text = e.to_string();
+        ReadError::Malformed {
+            place: Place::Column {
+                line: e.line() as u64,
+                column: e.column() as u64,
+            },
+            what: text.split(" at line ").next().unwrap_or(&text).into(),
+        }
+    })
+}
+
+pub fn read_mesh(bytes: &[u8]) -> Result<PolygonMesh, ReadError> {
+    let file: MeshFile = parse(bytes)?;
+    let count = file.vertices.len() as u64;
+    check_count("vertices", count)?;
+    if count == 0 {
+        return Err(ReadError::Nothing {
+            what: "vertices",
+            format: "JSON",
+        });
+    }
+    check_finite(&file.vertices, |i| Place::Record(i as u64))?;
+    let mut faces = FaceSink::keeping();
+    for (f, face) in file.faces.iter().enumerate() {
+        faces.push(face, count, Place::Record(f as u64))?;
+    }
+    let mut mesh = faces.mesh.unwrap_or_default();
+    mesh.vertices = file.vertices;
+    Ok(mesh)
+}
+
+/// The axis without a check of its indices.
+pub fn read_axis(bytes: &[u8]) -> Result<PowerShape, ReadError> {
+    let file: AxisFile = parse(bytes)?;
+    let ball = |(i, &[x, y, z, r]): (usize, &[f64; 4])| {
+        let place = Place::Record(i as u64);
+        check_finite(&[[x, y, z]], |_| place)?;
+        super::ply::ball([x, y, z], r, place)
+    };
+    let balls = file.balls.iter().enumerate().map(ball);
+    Ok(PowerShape {
+        balls: balls.collect::<Result<_, _>>()?,
+        ids: file.ids,
+        edges: file.edges,
+        triangles: file.triangles,
+        tetrahedra: file.tetrahedra,
+    })
+}
+
+/// Writes a list, one item a line.
+fn list<W: Write, T>(
+    out: &mut Buffer<W>,
+    name: &str,
+    items: impl Iterator<Item = T>,
+    mut item: impl FnMut(&mut Buffer<W>, T),
+) -> Result<(), WriteError> {
+    // A string cannot fail to become JSON.
+    out.text(&serde_json::to_string(name).unwrap_or_default());
+    out.text(":[");
+    for (i, value) in items.enumerate() {
+        out.text(if i == 0 { "\n" } else { ",\n" });
+        item(out, value);
+        out.record()?;
+    }
+    out.text("]");
+    Ok(())
+}
+
+/// JSON knows no NaN and no infinity: they become null.
+fn real<W: Write>(out: &mut Buffer<W>, value: f64) {
+    if value.is_finite() {
+        out.number(value);
+    } else {
+        out.text("null");
+    }
+}
+
+fn reals<W: Write>(out: &mut Buffer<W>, values: &[f64]) {
+    for (k, &value) in values.iter().enumerate() {
+        out.text(if k == 0 { "[" } else { "," });
+        real(out, value);
+    }
+    out.text("]");
+}
+
+fn indices<W: Write>(out: &mut Buffer<W>, values: &[u32]) {
+    out.text("[");
+    for (k, &value) in values.iter().enumerate() {
+        if k > 0 {
+            out.text(",");
+        }
+        out.integer(i64::from(value));
+    }
+    out.text("]");
+}
+
+fn attributes<W: Write>(
+    out: &mut Buffer<W>,
+    name: &str,
+    attributes: &[Attribute],
+) -> Result<(), WriteError> {
+    if attributes.is_empty() {
+        return Ok(());
+    }
+    out.text(&format!(",\n\"{name}\":{{"));
+    for (i, a) in attributes.iter().enumerate() {
+        out.text(if i == 0 { "\n" } else { ",\n" });
+        match a.values {
+            AttributeValues::Byte(v) => list(out, a.name, v.iter(), |o, &v| o.integer(v.into()))?,
+            AttributeValues::Int(v) => list(out, a.name, v.iter(), |o, &v| o.integer(v.into()))?,
+            AttributeValues::Float(v) => list(out, a.name, v.iter(), |o, &v| real(o, v))?,
+        }
+    }
+    out.text("}");
+    Ok(())
+}
+
+pub fn write_mesh<W: Write>(
+    writer: &mut W,
+    mesh: &PolygonMesh,
+    with: &MeshAttributes,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    let mut out = Buffer::new(writer, options);
+    out.text("{");
+    list(&mut out, "vertices", mesh.vertices.iter(), |o, p| {
+        reals(o, p)
+    })?;
+    out.text(",\n");
+    list(&mut out, "faces", mesh.faces(), indices)?;
+    if let Some(normals) = with.normals {
+        out.text(",\n");
+        list(&mut out, "normals", normals.iter(), |o, n| {
+            reals(o, &n.map(f64::from))
+        })?;
+    }
+    if let Some(colours) = with.colours {
+        out.text(",\n");
+        list(&mut out, "colours", colours.iter(), |o, c| {
+            indices(o, &c.map(u32::from))
+        })?;
+    }
+    if let Some(samples) = with.samples {
+        out.text(",\n");
+        list(&mut out, "samples", samples.iter(), |o, &s| {
+            o.integer(if s == NONE { -1 } else { i64::from(s) })
+        })?;
+    }
+    attributes(&mut out, "vertex_attributes", &with.vertices)?;
+    attributes(&mut out, "face_attributes", &with.faces)?;
+    out.text("}\n");
+    out.finish()
+}
+
+pub fn write_axis<W: Write>(
+    writer: &mut W,
+    shape: &PowerShape,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    let mut out = Buffer::new(writer, options);
+    out.text("{");
+    list(&mut out, "balls", shape.balls.iter(), |o, b| {
+        let [x, y, z] = b.centre;
+        reals(o, &[x, y, z, b.radius]);
+    })?;
+    out.text(",\n");
+    list(&mut out, "ids", shape.ids.iter(), |o, &i| {
+        o.integer(i64::from(i))
+    })?;
+    out.text(",\n");
+    list(&mut out, "edges", shape.edges.iter(), |o, e| indices(o, e))?;
+    out.text(",\n");
+    list(&mut out, "triangles", shape.triangles.iter(), |o, t| {
+        indices(o, t)
+    })?;
+    out.text(",\n");
+    list(&mut out, "tetrahedra", shape.tetrahedra.iter(), |o, t| {
+        indices(o, t)
+    })?;
+    out.text("}\n");
+    out.finish()
+}

@@ -1,0 +1,134 @@
+//! Sizes of a mesh in floating point: volumes, areas, angles.
+
+use super::frame::Frame;
+use super::soup::{place, Faces, Triangles};
+use super::topology::Topology;
+use super::PolygonMesh;
+use crate::geom::vec3::{cross, dot, norm, norm_sq, sub};
+use crate::geom::{Bounds, Point};
+
+/// Volume and area of a set of faces.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Size {
+    pub volume: f64,
+    pub area: f64,
+}
+
+/// The shape of triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shape {
+    /// In degrees; `None` for no triangles.
+    pub smallest_angle: Option<f64>,
+    /// Triangles by longest side over height: up to 2, 4, 10, 100, 1000,
+    /// 10 000, and the rest.
+    pub aspects: [u64; 7],
+}
+
+/// The largest aspect of each class but the last.
+const ASPECTS: [f64; 6] = [2.0, 4.0, 10.0, 100.0, 1e3, 1e4];
+
+/// Volume and area of each of `count` sets of faces, `label` telling the set
+/// of a face. Volumes are taken about `origin`.
+pub(super) fn sizes(
+    points: &[Point],
+    origin: Point,
+    triangles: &Triangles,
+    label: &[u32],
+    count: usize,
+) -> Vec<Size> {
+    let mut sizes = vec![Size::default(); count];
+    for (&t, &f) in triangles.corners.iter().zip(&triangles.face) {
+        let [a, b, c] = place(points, t).map(|p| sub(p, origin));
+        let normal = cross(sub(b, a), sub(c, a));
+        let size = &mut sizes[label[f as usize] as usize];
+        size.volume += dot(a, normal) / 6.0;
+        size.area += norm(normal) / 2.0;
+    }
+    sizes
+}
+
+/// Smallest angle and the histogram of aspects of all triangles.
+pub(super) fn shape(points: &[Point], triangles: &Triangles) -> Shape {
+    let mut shape = Shape {
+        smallest_angle: None,
+        aspects: [0; 7],
+    };
+    for &t in &triangles.corners {
+        let [a, b, c] = place(points, t);
+        let mut sides = [sub(c, b), sub(a, c), sub(b, a)];
+        let doubled = norm(cross(sides[1], sides[2]));
+        sides.sort_by(|x, y| norm_sq(*x).total_cmp(&norm_sq(*y)));
+        let aspect = norm_sq(sides[2]) / doubled;
+        let class = ASPECTS.iter().position(|&most| aspect <= most);
+        shape.aspects[class.unwrap_or(ASPECTS.len())] += 1;
+        // The smallest angle lies between the two longer sides.
+        let angle = doubled.atan2(dot(sides[1], sides[2]).abs()).to_degrees();
+        shape.smallest_angle = Some(match shape.smallest_angle {
+            Some(least) => least.min(angle),
+            None => angle,
+        });
+    }
+    shape
+}
+
+/// The middle of the box of the vertices that are finite.
+pub(super) fn middle(bounds: &Option<Bounds>) -> Point {
+    match bounds {
+        Some(b) => std::array::from_fn(|k| b.min[k] / 2.0 + b.max[k] / 2.0),
+        None => [0.0; 3],
+    }
+}
+
+/// The box of the finite ones among some points.
+pub(super) fn finite_bounds<'a>(points: impl Iterator<Item = &'a Point>) -> Option<Bounds> {
+    let mut bounds: Option<Bounds> = None;
+    for &p in points.filter(|p| p.iter().all(|x| x.is_finite())) {
+        let b = bounds.get_or_insert(Bounds { min: p, max: p });
+        for (k, x) in p.into_iter().enumerate() {
+            b.min[k] = b.min[k].min(x);
+            b.max[k] = b.max[k].max(x);
+        }
+    }
+    bounds
+}
+
+/// The shells of a mesh, faces joined by shared edges: a label for each face,
+/// numbered by first face, and the number of shells. Faces that cannot be
+/// walked (see [`super::Finding::IndexOutOfRange`]) have the label `u32::MAX`.
+///
+/// ```
+/// use powercrust::mesh::{components, PolygonMesh};
+/// let mut mesh = PolygonMesh::with_vertices(vec![[0.0; 3]; 6]);
+/// mesh.push_face(&[0, 1, 2]);
+/// mesh.push_face(&[3, 4, 5]);
+/// mesh.push_face(&[2, 1, 0]);
+/// assert_eq!(components(&mesh), (vec![0, 1, 0], 2));
+/// ```
+pub fn components(mesh: &PolygonMesh) -> (Vec<u32>, usize) {
+    let faces = Faces::of(mesh, |_, _| ());
+    let topology = Topology::of(mesh.vertices.len(), &faces);
+    let mut labels = vec![u32::MAX; mesh.face_count()];
+    for (&number, &shell) in faces.number.iter().zip(&topology.shell) {
+        labels[number as usize] = shell;
+    }
+    (labels, topology.shell_edges.len())
+}
+
+/// The signed volume that each shell of [`components`] encloses, in cubed
+/// units of the mesh: negative for shells that look inward, such as the walls
+/// of cavities; meaningless for open shells.
+pub fn component_volumes(mesh: &PolygonMesh) -> Vec<f64> {
+    let faces = Faces::of(mesh, |_, _| ());
+    let topology = Topology::of(mesh.vertices.len(), &faces);
+    let origin = middle(&finite_bounds(mesh.vertices.iter()));
+    sizes(
+        &mesh.vertices,
+        origin,
+        &faces.triangles(&Frame::new(&mesh.vertices)),
+        &topology.shell,
+        topology.shell_edges.len(),
+    )
+    .iter()
+    .map(|s| s.volume)
+    .collect()
+}

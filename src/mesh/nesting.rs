@@ -1,0 +1,131 @@
+//! Which closed shells enclose which, decided exactly.
+//!
+//! From a vertex of a shell a ray runs along the x axis. A shell that it
+//! leaves an odd number of times encloses the vertex, and with it the whole
+//! shell, provided that shells do not cross or touch. The ray is moved aside
+//! by a symbolic amount, `e` in y and `e^2` in z, so that it meets no edge.
+
+use super::bvh::Cuboid;
+use super::crossing::Field;
+use super::frame::Kernel;
+use super::soup::place;
+use super::topology::Topology;
+use crate::geom::Point;
+use rayon::prelude::*;
+
+/// For each shell the number of closed shells around it; `None` for shells
+/// that are not closed or have all their corners at corners of other shells.
+pub(super) fn depths(field: &Field, topology: &Topology, closed: &[bool]) -> Vec<Option<u32>> {
+    let witnesses = witnesses(field, topology, closed.len());
+    (0..closed.len())
+        .into_par_iter()
+        .map(|s| match (closed[s], witnesses[s]) {
+            (true, Some(v)) => Some(depth(field, topology, closed, s as u32, v)),
+            _ => None,
+        })
+        .collect()
+}
+
+/// For each shell a vertex at whose position no other shell has one.
+fn witnesses(field: &Field, topology: &Topology, shells: usize) -> Vec<Option<u32>> {
+    const SEVERAL: u32 = u32::MAX;
+    let shell = |t: u32| topology.shell[field.triangles.face[t as usize] as usize];
+    let mut owner: Vec<Option<u32>> = vec![None; field.frame.points.len()];
+    for &(t, corners) in &field.slots {
+        for v in corners {
+            let owner = &mut owner[v as usize];
+            match *owner {
+                Some(s) if s != shell(t) => *owner = Some(SEVERAL),
+                Some(_) => {}
+                None => *owner = Some(shell(t)),
+            }
+        }
+    }
+    let mut witnesses = vec![None; shells];
+    for (v, owner) in owner.iter().enumerate() {
+        if let Some(witness) = owner.and_then(|s| witnesses.get_mut(s as usize)) {
+            witness.get_or_insert(v as u32);
+        }
+    }
+    witnesses
+}
+
+/// The number of closed shells but `own` around vertex `v`.
+fn depth(field: &Field, topology: &Topology, closed: &[bool], own: u32, v: u32) -> u32 {
+    let p = field.frame.points[v as usize];
+    let ray = Cuboid {
+        min: p,
+        max: [f64::INFINITY, p[1], p[2]],
+    };
+    let mut hit = Vec::new();
+    field.bvh.query(&ray, |slot| {
+        let (t, corners) = field.slots[slot as usize];
+        let shell = topology.shell[field.triangles.face[t as usize] as usize];
+        let other = shell != own && closed[shell as usize];
+        if other && hits(field.frame.kernel, p, &place(&field.frame.points, corners)) {
+            hit.push(shell);
+        }
+    });
+    hit.sort_unstable();
+    let odd = hit.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1);
+    odd.count() as u32
+}
+
+/// Whether the ray from `p`, which is not on the triangle, meets it.
+fn hits(kernel: Kernel, p: Point, t: &[Point; 3]) -> bool {
+    let flat = |p: Point| [p[1], p[2]];
+    let turn = kernel.orient2d(flat(t[0]), flat(t[1]), flat(t[2]));
+    let inside = (0..3).all(|i| {
+        let (u, v) = (flat(t[i]), flat(t[(i + 1) % 3]));
+        let sign = |less: f64, more: f64| (more > less) as i8 - (more < less) as i8;
+        let side = match kernel.orient2d(u, v, flat(p)) {
+            0 => match -sign(u[1], v[1]) {
+                0 => sign(u[0], v[0]),
+                side => side,
+            },
+            side => side,
+        };
+        side == turn
+    });
+    // Seen from large x, a triangle of positive turn runs counterclockwise,
+    // and a point at smaller x lies below it, where the determinant is
+    // positive.
+    turn != 0 && inside && kernel.orient3d(t[0], t[1], t[2], p) == turn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ray_through_an_edge_or_a_corner_hits_one_of_the_triangles_there() {
+        let far = |y: f64, z: f64| [5.0, y, z];
+        // A fan of six triangles about the axis, and the ray along it.
+        let ring = [
+            [2., 0.],
+            [1., 2.],
+            [-1., 2.],
+            [-2., 0.],
+            [-1., -2.],
+            [1., -2.],
+        ];
+        let count = |p: Point, reverse: bool| {
+            let hits = (0..6).filter(|&k| {
+                let [a, b] = [ring[k], ring[(k + 1) % 6]].map(|q| far(q[0], q[1]));
+                let t = match reverse {
+                    true => [far(0., 0.), b, a],
+                    false => [far(0., 0.), a, b],
+                };
+                hits(Kernel::Lattice, p, &t)
+            });
+            hits.count()
+        };
+        for reverse in [false, true] {
+            assert_eq!(count([0., 0., 0.], reverse), 1);
+            assert_eq!(count([0., 1., 0.], reverse), 1);
+            assert_eq!(count([0., 0.5, 1.], reverse), 1);
+            assert_eq!(count([6., 0.5, 1.], reverse), 0);
+            assert_eq!(count([0., 3., 0.], reverse), 0);
+        }
+    }
+}

@@ -1,0 +1,856 @@
+//! The mesh checker against hand-made meshes, an independent oracle in exact
+//! rational arithmetic, and public meshes whose facts are known.
+
+use powercrust::context::{Progress, Stage};
+use powercrust::mesh::{
+    check, component_volumes, components, CheckOptions, Counts, Finding, PolygonMesh, Report,
+    Surface,
+};
+use powercrust::{Cancelled, Context, Point};
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+fn mesh(points: &[[i32; 3]], faces: &[&[u32]]) -> PolygonMesh {
+    let mut mesh = PolygonMesh::with_vertices(points.iter().map(|p| p.map(f64::from)).collect());
+    faces.iter().for_each(|f| mesh.push_face(f));
+    mesh
+}
+
+fn judge(mesh: &PolygonMesh) -> Report {
+    check(mesh, &CheckOptions::default(), &Context::default()).unwrap()
+}
+
+const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+const CORNER: [[i32; 3]; 4] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+const CUBE: [[u32; 4]; 6] = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+];
+
+fn tetrahedron() -> PolygonMesh {
+    mesh(&CORNER, &TETRAHEDRON.each_ref().map(|f| &f[..]))
+}
+
+/// A cube of the given size with its least corner at `at`.
+fn cube(at: i32, size: i32) -> PolygonMesh {
+    let corner = |k: i32| [k & 1, k >> 1 & 1, k >> 2].map(|b| at + b * size);
+    let points: Vec<_> = (0..8).map(corner).collect();
+    mesh(&points, &CUBE.each_ref().map(|f| &f[..]))
+}
+
+fn flipped(mesh: &PolygonMesh) -> PolygonMesh {
+    let mut flipped = PolygonMesh::with_vertices(mesh.vertices.clone());
+    for face in mesh.faces() {
+        flipped.push_face(&face.iter().rev().copied().collect::<Vec<_>>());
+    }
+    flipped
+}
+
+/// Both meshes in one.
+fn join(a: &PolygonMesh, b: &PolygonMesh) -> PolygonMesh {
+    let mut both = a.clone();
+    let shift = a.vertices.len() as u32;
+    both.vertices.extend_from_slice(&b.vertices);
+    for face in b.faces() {
+        both.push_face(&face.iter().map(|v| v + shift).collect::<Vec<_>>());
+    }
+    both
+}
+
+#[test]
+fn tetrahedron_and_cube_are_watertight() {
+    let report = judge(&tetrahedron());
+    assert!(report.is_watertight() && report.is_embedded());
+    assert_eq!(report.counts, Counts::default());
+    assert_eq!((report.edges, report.euler, report.genus), (6, 2, Some(0)));
+    assert!((report.volume - 1.0 / 6.0).abs() < 1e-15);
+    let report = judge(&cube(0, 2));
+    assert!(report.is_embedded() && report.findings.is_empty());
+    assert_eq!((report.triangles, report.edges), (12, 12));
+    assert_eq!((report.volume, report.area), (8.0, 24.0));
+    assert_eq!(report.smallest_angle, Some(45.0));
+    assert_eq!(report.aspects[0], 12);
+    assert_eq!(report.bounds.unwrap().max, [2.0; 3]);
+}
+
+#[test]
+fn open_mesh() {
+    let mut open = tetrahedron();
+    open.starts.pop();
+    open.corners.truncate(9);
+    let report = judge(&open);
+    assert!(!report.is_closed());
+    assert_eq!(report.counts.open_edge, 3);
+    assert_eq!(report.shells[0].loops, 1);
+    assert_eq!(report.genus, Some(0));
+}
+
+#[test]
+fn inside_out_and_cavity() {
+    let report = judge(&flipped(&cube(0, 1)));
+    assert!(report.is_closed() && !report.is_watertight());
+    assert_eq!(report.findings, [Finding::InsideOut { shell: 0 }]);
+    let hollow = join(&cube(0, 3), &flipped(&cube(1, 1)));
+    let report = judge(&hollow);
+    assert!(report.is_embedded());
+    assert_eq!((report.volume, report.cavities), (26.0, 1));
+    assert_eq!(component_volumes(&hollow), [27.0, -1.0]);
+    assert_eq!(components(&hollow).1, 2);
+}
+
+#[test]
+fn shells_must_face_the_way_their_nesting_asks() {
+    // A second solid inside the first one, and a wall of a cavity outside.
+    for wrong in [
+        join(&cube(0, 3), &cube(1, 1)),
+        join(&cube(0, 3), &flipped(&cube(5, 1))),
+    ] {
+        let report = judge(&wrong);
+        assert_eq!(report.findings, [Finding::InsideOut { shell: 1 }]);
+    }
+    // A solid in a cavity of a solid, and one beside it.
+    let island = join(&cube(0, 5), &flipped(&cube(1, 3)));
+    let island = join(&join(&island, &cube(2, 1)), &cube(6, 1));
+    assert!(judge(&island).is_embedded());
+}
+
+#[test]
+fn tetrahedra_that_share_a_vertex() {
+    let points = [CORNER.as_slice(), &[[-1, 0, 0], [0, -1, 0], [0, 0, -1]]].concat();
+    let other: [[u32; 3]; 4] = [[0, 4, 5], [0, 6, 4], [4, 6, 5], [5, 6, 0]];
+    let faces: Vec<&[u32]> = TETRAHEDRON.iter().chain(&other).map(|f| &f[..]).collect();
+    let report = judge(&mesh(&points, &faces));
+    assert!(report.is_closed() && !report.is_watertight());
+    assert_eq!(
+        report.findings,
+        [Finding::PinchedVertex { vertex: 0, fans: 2 }]
+    );
+    assert_eq!((report.components, report.shells.len()), (1, 2));
+    assert_eq!(report.genus, Some(0));
+    // The same with the vertex split: a legal pinch.
+    let mut split = mesh(&points, &faces);
+    split.vertices.push([0.0; 3]);
+    for v in &mut split.corners[12..] {
+        *v = if *v == 0 { 7 } else { *v };
+    }
+    let report = judge(&split);
+    assert!(report.is_watertight() && !report.is_embedded());
+    assert_eq!(report.duplicate_positions, 1);
+    assert_eq!(report.counts.coincident, 9);
+    assert_eq!(report.components, 2);
+}
+
+#[test]
+fn tetrahedra_that_share_an_edge() {
+    let points = [CORNER.as_slice(), &[[-1, -1, 0], [-1, 1, -1]]].concat();
+    let other: [[u32; 3]; 4] = [[0, 4, 3], [0, 3, 5], [3, 4, 5], [4, 0, 5]];
+    let faces: Vec<&[u32]> = TETRAHEDRON.iter().chain(&other).map(|f| &f[..]).collect();
+    let report = judge(&mesh(&points, &faces));
+    assert_eq!(report.counts.non_manifold_edge, 1);
+    assert_eq!(report.counts.crossing + report.counts.touching, 0);
+    let Finding::NonManifoldEdge { edge, faces } = &report.findings[0] else {
+        panic!("{:?}", report.findings);
+    };
+    assert_eq!((*edge, faces.len()), ([0, 3], 4));
+    assert!(!report.is_closed());
+    assert_eq!(report.genus, None);
+}
+
+#[test]
+fn faults_of_single_faces() {
+    let mut bad = tetrahedron();
+    bad.vertices.push([f64::NAN, 0.0, 0.0]);
+    bad.push_face(&[0, 9, 1]);
+    bad.push_face(&[0, 1]);
+    bad.push_face(&[0, 1, 1]);
+    bad.push_face(&[1, 0, 2]);
+    let report = judge(&bad);
+    let expected = [
+        Finding::IndexOutOfRange { face: 4 },
+        Finding::FaceTooSmall { face: 5 },
+        Finding::NotFinite { vertex: 4 },
+        Finding::RepeatedVertex { face: 6, vertex: 1 },
+        Finding::UnusedVertex { vertex: 4 },
+        Finding::ZeroArea { face: 6 },
+        Finding::DuplicateFace { a: 0, b: 7 },
+    ];
+    for finding in expected {
+        assert!(report.findings.contains(&finding), "{finding:?}");
+    }
+    assert!(!report.is_closed());
+}
+
+#[test]
+fn neighbours_that_fold_over_each_other() {
+    let points = [[0, 0, 0], [2, 0, 0], [1, 2, 0], [1, 1, 0], [1, -1, 0]];
+    let report = judge(&mesh(&points, &[&[0, 1, 2], &[1, 0, 3]]));
+    assert!(report.findings.contains(&Finding::Crossing { a: 0, b: 1 }));
+    let report = judge(&mesh(&points, &[&[0, 1, 2], &[1, 0, 4]]));
+    assert_eq!(report.counts.crossing + report.counts.touching, 0);
+    // Two faces with the same corners cross as well as being doubles.
+    let report = judge(&mesh(&points, &[&[0, 1, 2], &[2, 1, 0]]));
+    assert_eq!(
+        (report.counts.crossing, report.counts.duplicate_face),
+        (1, 1)
+    );
+}
+
+#[test]
+fn misoriented_pair() {
+    let points = [[0, 0, 0], [2, 0, 0], [1, 2, 0], [1, -1, 0]];
+    let report = judge(&mesh(&points, &[&[0, 1, 2], &[0, 1, 3]]));
+    assert!(report.findings.contains(&Finding::MisorientedEdge {
+        edge: [0, 1],
+        faces: [0, 1]
+    }));
+    assert_eq!(report.counts.open_edge, 4);
+}
+
+#[test]
+fn nothing_panics_on_broken_arrays() {
+    let good = tetrahedron();
+    let broken = |f: &dyn Fn(&mut PolygonMesh)| {
+        let mut mesh = good.clone();
+        f(&mut mesh);
+        let report = judge(&mesh);
+        components(&mesh);
+        component_volumes(&mesh);
+        Surface::new(&mesh).distance([0.5; 3]);
+        serde_json::to_string(&report).unwrap();
+        assert!(!report.is_watertight());
+    };
+    broken(&|m| *m = PolygonMesh::default());
+    broken(&|m| *m = PolygonMesh::with_vertices(vec![[0.0; 3]]));
+    broken(&|m| m.starts[2] = 99);
+    broken(&|m| m.starts[1] = u32::MAX);
+    broken(&|m| m.starts.reverse());
+    broken(&|m| m.corners.clear());
+    broken(&|m| m.corners.fill(0));
+    broken(&|m| m.corners[3] = u32::MAX);
+    broken(&|m| m.vertices.clear());
+    broken(&|m| m.vertices[1] = [f64::INFINITY, f64::NAN, -0.0]);
+    broken(&|m| m.vertices.fill([f64::MAX; 3]));
+    broken(&|m| m.vertices[3] = [f64::MAX, -f64::MAX, f64::MIN_POSITIVE]);
+}
+
+#[test]
+fn the_whole_range_of_doubles_is_exact() {
+    // The unit tetrahedra overlap by one last bit, or touch, or are apart,
+    // at any scale; the smallest coordinate may be far below the largest.
+    for scale in [1.0, 2f64.powi(900), 2f64.powi(-900)] {
+        for tiny in [0.0, scale * 2f64.powi(-52), scale * 1e-120] {
+            for (gap, crosses) in [(-1.0, true), (1.0, false)] {
+                let mut a = tetrahedron();
+                a.vertices.iter_mut().flatten().for_each(|x| *x *= scale);
+                let mut b = flipped(&a);
+                for p in &mut b.vertices {
+                    p[2] = -p[2] - gap * tiny;
+                }
+                let report = judge(&join(&a, &b));
+                let c = report.counts;
+                let moved = tiny > 0.0 && a.vertices[3][2] + tiny > tiny;
+                let expected = match (moved, crosses) {
+                    (false, _) => (true, false, true),
+                    (true, true) => (true, false, false),
+                    (true, false) => (false, false, false),
+                };
+                let found = (c.crossing > 0, c.touching > 0 && c.crossing == 0, {
+                    report.duplicate_positions == 3
+                });
+                assert_eq!(found, expected, "{scale:e} {tiny:e} {gap}");
+            }
+        }
+    }
+}
+
+#[test]
+fn rounding_to_single_precision_is_judged_on_demand() {
+    let mut thin = tetrahedron();
+    thin.vertices[3] = [0.25, 0.25, 1e-50];
+    assert!(judge(&thin).is_watertight());
+    let options = CheckOptions {
+        f32: true,
+        ..CheckOptions::default()
+    };
+    let report = check(&thin, &options, &Context::default()).unwrap();
+    assert_eq!(report.volume, 0.0);
+    assert!(report.counts.crossing > 0 && !report.is_watertight());
+}
+
+#[test]
+fn polygons_that_are_not_convex_are_no_fault() {
+    // An L-shaped prism; a fan from its first corner would leave the L.
+    let outline = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]];
+    for turn in 0..6 {
+        let at = |k: usize| outline[(k + turn) % 6];
+        let points: Vec<[i32; 3]> = (0..12)
+            .map(|k| [at(k % 6)[0], at(k % 6)[1], (k / 6) as i32])
+            .collect();
+        let mut prism = mesh(&points, &[&[5, 4, 3, 2, 1, 0], &[6, 7, 8, 9, 10, 11]]);
+        for k in 0..6 {
+            let next = (k + 1) % 6;
+            prism.push_face(&[k, next, next + 6, k + 6]);
+        }
+        let report = judge(&prism);
+        assert!(report.is_embedded(), "{turn}: {:?}", report.findings);
+        assert!((report.volume - 3.0).abs() < 1e-14);
+        assert!((report.area - 14.0).abs() < 1e-14);
+    }
+}
+
+/// Stops after a number of calls.
+struct Stop(std::sync::atomic::AtomicU64);
+
+impl Progress for Stop {
+    fn advance(&self, stage: Stage, _: u64, _: u64) -> ControlFlow<()> {
+        assert_eq!(stage, Stage::Check);
+        match self.0.fetch_sub(1, std::sync::atomic::Ordering::Relaxed) {
+            0 => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        }
+    }
+}
+
+#[test]
+fn cancelling_stops_the_check() {
+    let sphere = wavy_sphere(40, 0.0);
+    for calls in [0, 2, 5] {
+        let stop = Stop(calls.into());
+        let cx = Context {
+            progress: &stop,
+            threads: NonZeroUsize::new(1),
+        };
+        let report = check(&sphere, &CheckOptions::default(), &cx);
+        assert_eq!(report.err(), Some(Cancelled));
+    }
+}
+
+/// A sphere of `2 n (n - 1)` triangles, its radius disturbed by up to `wave`.
+fn wavy_sphere(n: u32, wave: f64) -> PolygonMesh {
+    let mut random = Random(12345);
+    let mut mesh = PolygonMesh::with_vertices(vec![[0.0, 0.0, -1.0]]);
+    for i in 1..n {
+        let latitude = std::f64::consts::PI * f64::from(i) / f64::from(n);
+        for j in 0..n {
+            let longitude = std::f64::consts::TAU * f64::from(j) / f64::from(n);
+            let r = 1.0 + wave * (random.next() % 1000) as f64 / 1000.0;
+            let (s, c) = latitude.sin_cos();
+            mesh.vertices
+                .push([r * s * longitude.cos(), r * s * longitude.sin(), r * -c]);
+        }
+    }
+    mesh.vertices.push([0.0, 0.0, 1.0]);
+    let last = mesh.vertices.len() as u32 - 1;
+    let at = |i: u32, j: u32| 1 + (i - 1) * n + j % n;
+    for j in 0..n {
+        mesh.push_face(&[0, at(1, j + 1), at(1, j)]);
+        for i in 1..n - 1 {
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            mesh.push_face(&[a, b, c]);
+            mesh.push_face(&[a, c, d]);
+        }
+        mesh.push_face(&[last, at(n - 1, j), at(n - 1, j + 1)]);
+    }
+    mesh
+}
+
+#[test]
+fn reports_do_not_depend_on_threads() {
+    let mut waves = wavy_sphere(60, 0.2);
+    waves.vertices.iter_mut().flatten().for_each(|x| *x *= 0.9);
+    let mesh = join(&wavy_sphere(60, 0.0), &waves);
+    let options = CheckOptions {
+        max_findings: 50,
+        ..CheckOptions::default()
+    };
+    let with = |n: usize| {
+        let cx = Context {
+            threads: NonZeroUsize::new(n),
+            ..Context::default()
+        };
+        check(&mesh, &options, &cx).unwrap()
+    };
+    let report = with(1);
+    assert!(report.counts.crossing > 100);
+    assert!(report.findings.len() >= 50);
+    assert_eq!(report, with(2));
+    assert_eq!(report, with(3));
+}
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+}
+
+/// Exact intersections of integer triangles by clipping in rational numbers:
+/// shares no idea with the checker.
+mod oracle {
+    /// A point as `(x, y, z, w)` for `(x, y, z) / w`, `w > 0`, lowest terms.
+    pub type Rational = [i128; 4];
+    pub type Triangle = [[i128; 3]; 3];
+
+    #[derive(Debug, PartialEq, Eq, Clone, Copy)]
+    pub enum Contact {
+        Disjoint,
+        Shared,
+        Touching,
+        Crossing,
+    }
+
+    fn sub(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {
+        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+    }
+
+    fn cross(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    }
+
+    pub fn normal(t: &Triangle) -> [i128; 3] {
+        cross(sub(t[1], t[0]), sub(t[2], t[0]))
+    }
+
+    fn gcd(a: i128, b: i128) -> i128 {
+        if b == 0 {
+            a.abs()
+        } else {
+            gcd(b, a % b)
+        }
+    }
+
+    fn lowest(p: Rational) -> Rational {
+        let g = p.iter().fold(0, |g, &x| gcd(g, x)) * p[3].signum();
+        p.map(|x| x / g)
+    }
+
+    /// `n . (p - o)` times `p`'s denominator.
+    fn height(n: [i128; 3], o: [i128; 3], p: Rational) -> i128 {
+        (0..3).map(|k| n[k] * (p[k] - o[k] * p[3])).sum()
+    }
+
+    /// The part of a convex polygon where `n . (p - o) >= 0`.
+    fn clip(polygon: &[Rational], n: [i128; 3], o: [i128; 3]) -> Vec<Rational> {
+        let mut kept = Vec::new();
+        for (i, &p) in polygon.iter().enumerate() {
+            let q = polygon[(i + 1) % polygon.len()];
+            let (hp, hq) = (height(n, o, p), height(n, o, q));
+            if hp >= 0 {
+                kept.push(p);
+            }
+            if hp.signum() * hq.signum() < 0 {
+                // (hp / wp) and (hq / wq) weigh q and p.
+                let (a, b) = (hq.abs(), hp.abs());
+                kept.push(lowest(std::array::from_fn(|k| p[k] * a + q[k] * b)));
+            }
+        }
+        kept.dedup();
+        kept
+    }
+
+    /// Corners of the intersection of two triangles with an area.
+    pub fn intersection(a: &Triangle, b: &Triangle) -> Vec<Rational> {
+        let n = normal(b);
+        let mut polygon: Vec<Rational> = a.iter().map(|p| [p[0], p[1], p[2], 1]).collect();
+        polygon = clip(&polygon, n, b[0]);
+        polygon = clip(&polygon, n.map(|x| -x), b[0]);
+        for i in 0..3 {
+            let side = sub(b[(i + 1) % 3], b[i]);
+            polygon = clip(&polygon, cross(n, side), b[i]);
+        }
+        polygon.sort_unstable();
+        polygon.dedup();
+        polygon
+    }
+
+    /// Whether a point of a triangle's plane is in its relative interior.
+    fn inside(p: Rational, t: &Triangle) -> bool {
+        let n = normal(t);
+        (0..3).all(|i| height(cross(n, sub(t[(i + 1) % 3], t[i])), t[i], p) > 0)
+    }
+
+    pub fn contact(a: &Triangle, b: &Triangle) -> Contact {
+        let corners = intersection(a, b);
+        if corners.is_empty() {
+            return Contact::Disjoint;
+        }
+        // A point of the relative interior of the intersection.
+        let middle = corners.iter().skip(1).fold(corners[0], |m, &p| {
+            lowest(std::array::from_fn(|k| m[k] * p[3] + p[k] * m[3]).map2(m, p))
+        });
+        if inside(middle, a) && inside(middle, b) {
+            return Contact::Crossing;
+        }
+        let mut common: Vec<Rational> = (a.iter())
+            .filter(|p| b.contains(p))
+            .map(|p| [p[0], p[1], p[2], 1])
+            .collect();
+        common.sort_unstable();
+        match common == corners {
+            true => Contact::Shared,
+            false => Contact::Touching,
+        }
+    }
+
+    /// The denominator of the middle of two points.
+    trait Middle {
+        fn map2(self, m: Rational, p: Rational) -> Rational;
+    }
+
+    impl Middle for Rational {
+        fn map2(mut self, m: Rational, p: Rational) -> Rational {
+            self[3] = 2 * m[3] * p[3];
+            self
+        }
+    }
+}
+
+/// What the checker says about two triangles.
+fn contact_by_check(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> oracle::Contact {
+    let points = [a.as_slice(), b.as_slice()].concat();
+    let report = judge(&mesh(&points, &[&[0, 1, 2], &[3, 4, 5]]));
+    let c = report.counts;
+    match (c.crossing, c.touching, c.coincident) {
+        (0, 0, 0) => oracle::Contact::Disjoint,
+        (1, 0, 0) => oracle::Contact::Crossing,
+        (0, 1, 0) => oracle::Contact::Touching,
+        (0, 0, 1) => oracle::Contact::Shared,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The same with corners at equal positions made one vertex.
+fn contact_when_shared(a: &[[i32; 3]; 3], b: &[[i32; 3]; 3]) -> Counts {
+    let mut points = a.to_vec();
+    let corners = b.map(|p| {
+        points.iter().position(|q| *q == p).unwrap_or_else(|| {
+            points.push(p);
+            points.len() - 1
+        }) as u32
+    });
+    judge(&mesh(&points, &[&[0, 1, 2], &corners])).counts
+}
+
+#[test]
+fn pairs_of_triangles_agree_with_rational_clipping() {
+    let mut random = Random(2718281828459045);
+    let mut seen = [0u32; 4];
+    let mut cases = 0;
+    while cases < 40_000 {
+        // Small cubes of integers give every degenerate position often; a
+        // flat one gives coplanar pairs.
+        let range = [2, 3, 4, 7][(random.next() % 4) as usize];
+        let flat = random.next() % 4 == 0;
+        let skew = random.next() % 2 == 0;
+        let mut point = || -> [i32; 3] {
+            let mut p: [i32; 3] = std::array::from_fn(|_| (random.next() % range) as i32);
+            if flat {
+                p[2] = if skew { 2 * p[0] - p[1] } else { 0 };
+            }
+            p
+        };
+        let a = [point(), point(), point()];
+        let mut b = [point(), point(), point()];
+        // Often make them share corners.
+        for i in 0..2 {
+            if random.next() % 4 == 0 {
+                b[(random.next() % 3) as usize] = a[i];
+            }
+        }
+        let wide = |t: [[i32; 3]; 3]| t.map(|p| p.map(i128::from));
+        let (wa, wb) = (wide(a), wide(b));
+        if oracle::normal(&wa) == [0; 3] || oracle::normal(&wb) == [0; 3] {
+            continue;
+        }
+        cases += 1;
+        let expected = oracle::contact(&wa, &wb);
+        assert_eq!(oracle::contact(&wb, &wa), expected, "oracle: {a:?} {b:?}");
+        assert_eq!(contact_by_check(&a, &b), expected, "{a:?} {b:?}");
+        let c = contact_when_shared(&a, &b);
+        let found = (c.crossing, c.touching, c.coincident);
+        let wanted = match expected {
+            oracle::Contact::Crossing => (1, 0, 0),
+            oracle::Contact::Touching => (0, 1, 0),
+            _ => (0, 0, 0),
+        };
+        assert_eq!(found, wanted, "shared: {a:?} {b:?}");
+        seen[expected as usize] += 1;
+    }
+    assert!(seen.iter().all(|&n| n > 1000), "{seen:?}");
+}
+
+#[test]
+fn the_tree_finds_the_pairs_that_brute_force_finds() {
+    let mut random = Random(31415926535);
+    for round in 0..60 {
+        let count = 5 + round;
+        let mut soup = PolygonMesh::default();
+        let mut triangles = Vec::new();
+        while triangles.len() < count {
+            let t: oracle::Triangle =
+                std::array::from_fn(|_| std::array::from_fn(|_| (random.next() % 12) as i128));
+            if oracle::normal(&t) == [0; 3] {
+                continue;
+            }
+            triangles.push(t);
+            let first = soup.vertices.len() as u32;
+            soup.vertices.extend(t.map(|p| p.map(|x| x as f64)));
+            soup.push_face(&[first, first + 1, first + 2]);
+        }
+        let options = CheckOptions {
+            max_findings: usize::MAX,
+            ..CheckOptions::default()
+        };
+        let report = check(&soup, &options, &Context::default()).unwrap();
+        let mut expected = [Vec::new(), Vec::new(), Vec::new()];
+        for i in 0..count {
+            for j in i + 1..count {
+                let (a, b) = (i as u32, j as u32);
+                match oracle::contact(&triangles[i], &triangles[j]) {
+                    oracle::Contact::Disjoint => {}
+                    oracle::Contact::Crossing => expected[0].push(Finding::Crossing { a, b }),
+                    oracle::Contact::Touching => expected[1].push(Finding::Touching { a, b }),
+                    oracle::Contact::Shared => expected[2].push(Finding::Coincident { a, b }),
+                }
+            }
+        }
+        let expected = expected.concat();
+        let found: Vec<Finding> = (report.findings.into_iter())
+            .filter(|f| {
+                matches!(
+                    f,
+                    Finding::Crossing { .. }
+                        | Finding::Touching { .. }
+                        | Finding::Coincident { .. }
+                )
+            })
+            .collect();
+        assert_eq!(found, expected, "round {round}");
+    }
+}
+
+#[test]
+fn distances_agree_with_brute_force() {
+    let sphere = wavy_sphere(24, 0.3);
+    let surface = Surface::new(&sphere);
+    let mut random = Random(161803398);
+    let points: Vec<Point> = (0..500)
+        .map(|_| std::array::from_fn(|_| (random.next() % 4000) as f64 / 1000.0 - 2.0))
+        .collect();
+    let found = surface.distances(&points, &Context::default()).unwrap();
+    for (p, distance) in points.iter().zip(found) {
+        assert_eq!(surface.distance(*p), distance);
+        let nearest = (0..sphere.face_count())
+            .map(|f| {
+                let mut one = PolygonMesh::with_vertices(sphere.vertices.clone());
+                one.push_face(sphere.face(f));
+                dense_distance(*p, &one)
+            })
+            .fold(f64::INFINITY, f64::min);
+        // The dense samples of each triangle come within a step of it.
+        assert!(distance <= nearest + 1e-12 && nearest - distance < 0.02);
+    }
+    for p in &sphere.vertices {
+        assert_eq!(surface.distance(*p), 0.0);
+    }
+}
+
+/// The distance to a grid of points of the mesh's one triangle.
+fn dense_distance(p: Point, one: &PolygonMesh) -> f64 {
+    let [a, b, c] = [0, 1, 2].map(|k| one.vertices[one.corners[k] as usize]);
+    let steps = 12;
+    let mut least = f64::INFINITY;
+    for i in 0..=steps {
+        for j in 0..=steps - i {
+            let (u, v) = (
+                f64::from(i) / f64::from(steps),
+                f64::from(j) / f64::from(steps),
+            );
+            let q: Point = std::array::from_fn(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]));
+            let d: f64 = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum();
+            least = least.min(d.sqrt());
+        }
+    }
+    least
+}
+
+/// The folder of public scans, if this machine has one.
+fn shared() -> Option<PathBuf> {
+    let root = match std::env::var_os("POWERCRUST_SHARED") {
+        Some(path) => PathBuf::from(path),
+        None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
+    };
+    root.join("scans/meshes").is_dir().then_some(root)
+}
+
+/// A plain reader of OFF files.
+fn read_off(path: &Path) -> PolygonMesh {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut numbers = (text.lines())
+        .map(|line| line.split('#').next().unwrap_or(""))
+        .flat_map(str::split_whitespace)
+        .filter_map(|word| word.parse::<f64>().ok());
+    let mut number = || numbers.next().unwrap();
+    let (vertices, faces, _) = (number() as usize, number() as usize, number());
+    let mut mesh = PolygonMesh::with_vertices(
+        (0..vertices)
+            .map(|_| [number(), number(), number()])
+            .collect(),
+    );
+    for _ in 0..faces {
+        let corners: Vec<u32> = (0..number() as usize).map(|_| number() as u32).collect();
+        mesh.push_face(&corners);
+    }
+    mesh
+}
+
+/// A plain reader of binary little-endian PLY triangles whose vertices begin
+/// with three floats and have nothing else.
+fn read_ply(path: &Path) -> Option<PolygonMesh> {
+    let bytes = std::fs::read(path).unwrap();
+    let mark = b"end_header\n";
+    let end = bytes.windows(mark.len()).position(|w| w == mark)? + mark.len();
+    let header = std::str::from_utf8(&bytes[..end]).ok()?;
+    let count = |what: &str| -> Option<usize> {
+        let line = header.lines().find(|l| l.starts_with(what))?;
+        line.rsplit(' ').next()?.parse().ok()
+    };
+    let (vertices, faces) = (count("element vertex")?, count("element face")?);
+    let rest = &bytes[end..];
+    if !header.contains("binary_little_endian") || rest.len() != 12 * vertices + 13 * faces {
+        return None;
+    }
+    let word = |k: usize| rest[k..k + 4].try_into().unwrap();
+    let mut mesh = PolygonMesh::with_vertices(
+        (0..vertices)
+            .map(|v| [0, 4, 8].map(|k| f64::from(f32::from_le_bytes(word(12 * v + k)))))
+            .collect(),
+    );
+    for f in 0..faces {
+        let at = 12 * vertices + 13 * f + 1;
+        mesh.push_face(&[0, 4, 8].map(|k| u32::from_le_bytes(word(at + k))));
+    }
+    Some(mesh)
+}
+
+#[test]
+fn public_meshes_have_their_known_facts() {
+    let Some(root) = shared() else {
+        eprintln!("skipped: no folder of public scans");
+        return;
+    };
+    let truth = std::fs::read_to_string(root.join("scans/TRUTH.csv")).unwrap();
+    let mut lines = truth.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| names.iter().position(|n| *n == name).unwrap();
+    let mut read = 0;
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        let file = fields[0];
+        let path = root.join("scans").join(file);
+        let mesh = match path.extension().and_then(|e| e.to_str()) {
+            _ if !file.starts_with("meshes/") => continue,
+            Some("off") => read_off(&path),
+            Some("ply") => match read_ply(&path) {
+                Some(mesh) => mesh,
+                None => continue,
+            },
+            _ => continue,
+        };
+        read += 1;
+        let start = std::time::Instant::now();
+        let report = judge(&mesh);
+        let fact = |name: &str| fields[column(name)].parse::<f64>().ok();
+        eprintln!(
+            "{file}: {} faces in {:?}, {:?} cross, {:?} touch",
+            report.faces,
+            start.elapsed(),
+            report.counts.crossing_faces,
+            report.counts.touching_faces,
+        );
+        assert_eq!(
+            report.is_closed() as u8 as f64,
+            fact("closed").unwrap(),
+            "{file}"
+        );
+        assert_eq!(
+            report.components as f64,
+            fact("components").unwrap(),
+            "{file}"
+        );
+        if let Some(bad) = fact("nonmanifold_edges") {
+            assert_eq!(report.counts.non_manifold_edge as f64, bad, "{file}");
+        }
+        if let Some(loops) = fact("loops") {
+            let found: u64 = report.shells.iter().map(|s| s.loops).sum();
+            assert_eq!(found as f64, loops, "{file}");
+        }
+        if let Some(genus) = fact("genus") {
+            assert_eq!(report.genus.map(|g| g as f64), Some(genus), "{file}");
+        }
+        if let Some(volume) = fact("volume") {
+            let error = (report.volume - volume).abs() / volume.abs();
+            // Polygons that are not planar leave some choice.
+            assert!(error < 1e-5, "{file}: {} not {volume}", report.volume);
+        }
+        let backwards = fact("volume").is_some_and(|v| v < 0.0);
+        assert_eq!(report.counts.inside_out > 0, backwards, "{file}");
+        // MeshLab finds the same numbers.
+        match file {
+            "meshes/venus_100000.ply" => assert_eq!(report.counts.crossing_faces, 45),
+            "meshes/block.off" => assert_eq!(report.counts.crossing_faces, 43),
+            _ => {}
+        }
+    }
+    assert!(read >= 45, "{read} meshes read");
+}
+
+/// `cargo test --release --test mesh_check -- --ignored --nocapture speed`
+#[test]
+#[ignore = "measures"]
+fn speed() {
+    for (n, wave) in [(708, 0.0), (708, 0.001)] {
+        let mesh = wavy_sphere(n, wave);
+        for intersections in [false, true] {
+            let options = CheckOptions {
+                intersections,
+                ..CheckOptions::default()
+            };
+            let start = std::time::Instant::now();
+            let report = check(&mesh, &options, &Context::default()).unwrap();
+            eprintln!(
+                "{} triangles, wave {wave}, intersections {intersections}: {:?}, {} cross",
+                report.triangles,
+                start.elapsed(),
+                report.counts.crossing_faces,
+            );
+        }
+        let start = std::time::Instant::now();
+        let surface = Surface::new(&mesh);
+        let built = start.elapsed();
+        let start = std::time::Instant::now();
+        let points: Vec<Point> = (mesh.vertices.iter())
+            .map(|p| p.map(|x| x * 1.01))
+            .collect();
+        let far = surface.distances(&points, &Context::default()).unwrap();
+        let far = far.into_iter().fold(0.0, f64::max);
+        eprintln!(
+            "  tree in {built:?}, {} distances in {:?}, up to {far}",
+            points.len(),
+            start.elapsed(),
+        );
+    }
+}
