@@ -16,7 +16,7 @@ pub use energy::{energy, Energy};
 pub use propagate::label;
 
 use crate::geom::{Ball, Side};
-use crate::poles::NO_POLE;
+use crate::poles::{PolesOfSample, NO_POLE};
 use crate::power::PowerDiagram;
 
 /// How to label.
@@ -54,30 +54,35 @@ pub struct Opposite {
     pub weight: f64,
 }
 
-/// The opposite pairs of all samples with two poles.
+/// The opposite pairs of all samples: first and second pole, or, where there
+/// is a third, that one and each of them.
 pub fn opposites(
-    of_sample: &[[u32; 2]],
+    of_sample: &[PolesOfSample],
     points: &[crate::geom::Point],
     balls: &[Ball],
 ) -> Vec<Opposite> {
     use crate::geom::vec3::{dot, norm, sub};
     let mut out = Vec::with_capacity(of_sample.len());
-    for (s, poles) in of_sample.iter().enumerate() {
-        if poles.contains(&NO_POLE) || poles[0] == poles[1] {
-            continue;
-        }
-        let [p, q] = poles.map(|b| sub(balls[b as usize].centre, points[s]));
-        let lengths = norm(p) * norm(q);
-        let weight = if lengths > 0.0 {
-            (-dot(p, q) / lengths).min(1.0)
+    for (s, &[first, second, third]) in of_sample.iter().enumerate() {
+        let pairs = if third == NO_POLE {
+            [[first, second], [NO_POLE; 2]]
         } else {
-            0.0
+            [[first, third], [second, third]]
         };
-        if weight > 0.0 {
-            out.push(Opposite {
-                poles: *poles,
-                weight,
-            });
+        for poles in pairs {
+            if poles.contains(&NO_POLE) || poles[0] == poles[1] {
+                continue;
+            }
+            let [p, q] = poles.map(|b| sub(balls[b as usize].centre, points[s]));
+            let lengths = norm(p) * norm(q);
+            let weight = if lengths > 0.0 {
+                (-dot(p, q) / lengths).min(1.0)
+            } else {
+                0.0
+            };
+            if weight > 0.0 {
+                out.push(Opposite { poles, weight });
+            }
         }
     }
     out

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::NO_POLE;
+use super::{PolesOfSample, NO_POLE};
 use crate::delaunay::Delaunay;
 use crate::geom::Point;
 use crate::predicates::Site;
@@ -69,9 +69,9 @@ impl Balls {
 pub(super) fn gather(
     delaunay: &Delaunay,
     centres: &[Point],
-    chosen: &[[u32; 2]],
+    chosen: &[PolesOfSample],
     lattice: BallLattice,
-) -> (Balls, Vec<[u32; 2]>) {
+) -> (Balls, Vec<PolesOfSample>) {
     let mut used = vec![false; centres.len()];
     for &c in chosen.iter().flatten() {
         if c != NO_POLE {
@@ -152,8 +152,8 @@ pub(super) fn gather(
     }
     let of_sample = chosen
         .iter()
-        .map(|pair| {
-            pair.map(|c| {
+        .map(|poles| {
+            poles.map(|c| {
                 if c == NO_POLE {
                     NO_POLE
                 } else {

@@ -5,6 +5,11 @@
 //!    the **ball lattice** ([`BallLattice`]): fact F1.
 //! 2. The first pole of a sample is its farthest Voronoi vertex, the second
 //!    the farthest on the other side; it can be missing.
+//!    Where it makes an angle below 120° with the first, the sample lies at an
+//!    edge, the cell opens wide on one side, and both are likely on that
+//!    side: a **third pole**, the farthest vertex on the other side of
+//!    both, is taken too. The paper has no such pole; without it 2 % of the
+//!    samples of a cube have both poles outside and end up off the crust.
 //! 3. A pole belongs to its cell, not to a sample: up to four samples share
 //!    it. Cells whose rounded centres coincide are one ball that touches the
 //!    samples of all of them: on a sphere every inner pole is the centre.
@@ -26,6 +31,9 @@ use crate::delaunay::{Delaunay, Samples};
 /// 'No such pole' among ball ids.
 pub const NO_POLE: u32 = u32::MAX;
 
+/// First, second and third pole of a sample.
+pub type PolesOfSample = [u32; 3];
+
 /// Which poles to drop (section 6).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PoleOptions {
@@ -40,9 +48,9 @@ pub struct PoleOptions {
 pub struct Poles {
     /// The balls.
     pub balls: Balls,
-    /// First and second pole of each sample, [`NO_POLE`] where there is none
-    /// or it was dropped.
-    pub of_sample: Vec<[u32; 2]>,
+    /// First, second and third pole of each sample, [`NO_POLE`] where there
+    /// is none or it was dropped.
+    pub of_sample: Vec<PolesOfSample>,
     /// Samples that lost a pole to the skinniness test.
     pub skinny_samples: u32,
     /// Poles (sides of samples) dropped by it.

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::{skinny, BallLattice, PoleOptions, NO_POLE};
+use super::{skinny, BallLattice, PoleOptions, PolesOfSample, NO_POLE};
 use crate::delaunay::{circumcentre, Delaunay};
-use crate::geom::vec3::{dist_sq, dot, sub};
+use crate::geom::vec3::{dist_sq, dot, norm, sub};
 use crate::geom::Point;
 
 /// The rounded circumcentre of each cell, in lattice steps of the samples.
@@ -30,8 +30,8 @@ pub(super) fn centres(delaunay: &Delaunay, lattice: BallLattice) -> Vec<Point> {
 
 /// The cells chosen as poles.
 pub(super) struct Chosen {
-    /// First and second pole of each sample, as cells.
-    pub cells: Vec<[u32; 2]>,
+    /// The poles of each sample, as cells.
+    pub cells: Vec<PolesOfSample>,
     pub skinny_samples: u32,
     pub dropped: u32,
 }
@@ -42,13 +42,13 @@ pub(super) struct Chosen {
 pub(super) fn select(delaunay: &Delaunay, centres: &[Point], options: &PoleOptions) -> Chosen {
     let vertices = delaunay.sites.len();
     let (starts, items) = delaunay.complex.cells_by_vertex(vertices);
-    let found: Vec<([u32; 2], u8)> = (0..delaunay.samples)
+    let found: Vec<(PolesOfSample, u8)> = (0..delaunay.samples)
         .into_par_iter()
         .map(|s| {
             let site = delaunay.sites[s];
             let at = [site[0], site[1], site[2]];
             let cells = &items[starts[s] as usize..starts[s + 1] as usize];
-            let poles = pair(at, cells, centres);
+            let poles = poles(at, cells, centres);
             drop_misshapen(at, cells, centres, poles, options)
         })
         .collect();
@@ -59,8 +59,12 @@ pub(super) fn select(delaunay: &Delaunay, centres: &[Point], options: &PoleOptio
     }
 }
 
-/// The two poles of a sample at `s` among its cells.
-fn pair(s: Point, cells: &[u32], centres: &[Point]) -> [u32; 2] {
+/// Cosine of the angle between first and second pole above which a third is
+/// looked for.
+const WIDE: f64 = -0.5;
+
+/// The poles of a sample at `s` among its cells.
+fn poles(s: Point, cells: &[u32], centres: &[Point]) -> PolesOfSample {
     let farthest = |ahead: &dyn Fn(Point) -> bool| {
         let mut best = NO_POLE;
         let mut reach = -1.0;
@@ -81,11 +85,22 @@ fn pair(s: Point, cells: &[u32], centres: &[Point]) -> [u32; 2] {
     };
     let first = farthest(&|_| true);
     if first == NO_POLE {
-        return [NO_POLE; 2];
+        return [NO_POLE; 3];
     }
     let normal = sub(centres[first as usize], s);
     let second = farthest(&|centre| dot(sub(centre, s), normal) < 0.0);
-    [first, second]
+    if second == NO_POLE {
+        return [first, NO_POLE, NO_POLE];
+    }
+    let other = sub(centres[second as usize], s);
+    let mut third = NO_POLE;
+    if dot(normal, other) > WIDE * norm(normal) * norm(other) {
+        third = farthest(&|centre| {
+            let to = sub(centre, s);
+            dot(to, normal) < 0.0 && dot(to, other) < 0.0
+        });
+    }
+    [first, second, third]
 }
 
 fn before(a: Point, b: Point) -> bool {
@@ -97,9 +112,9 @@ fn drop_misshapen(
     s: Point,
     cells: &[u32],
     centres: &[Point],
-    poles: [u32; 2],
+    poles: PolesOfSample,
     options: &PoleOptions,
-) -> ([u32; 2], u8) {
+) -> (PolesOfSample, u8) {
     let Some(lambda) = options.lambda else {
         return (poles, 0);
     };
@@ -111,8 +126,8 @@ fn drop_misshapen(
     let fails = poles.map(|p| p != NO_POLE && dist_sq(centres[p as usize], s) < bound * bound);
     let mut kept = poles;
     let mut dropped = 0;
-    for k in 0..2 {
-        if fails[k] || (options.sharp && (fails[0] || fails[1])) {
+    for k in 0..3 {
+        if fails[k] || (options.sharp && fails.contains(&true)) {
             dropped += (kept[k] != NO_POLE) as u8;
             kept[k] = NO_POLE;
         }

@@ -8,7 +8,9 @@
 //! already within `d² / 8r` of the tube at spacing d. So the criterion here is what the
 //! balls are *for*: a ball goes when another one passes within `delta` of
 //! every sample it touches, on the same side, where `delta` is a share of the sampling
-//! error `h² / 2r` at the sample (h the local spacing). The ball that stays
+//! error `h² / 2r` at the sample (h the local spacing). Balls smaller than twice the
+//! spacing, as they occur beside edges and in thin parts, are left alone: there the
+//! error is not what that formula says. The ball that stays
 //! inherits the samples: by fact F2 the crust still passes through them.
 //!
 //! Greedy, largest ball first, so the result is unique up to equal radii,
@@ -121,6 +123,9 @@ fn greedy(samples: &Samples, poles: &Poles, graph: &SampleGraph, share: f64) -> 
         let radius = balls.sites[c as usize][3].sqrt() * step;
         let covers = |s: u32| {
             let h = graph.spacing[s as usize];
+            if 2.0 * h > radius {
+                return false;
+            }
             let miss = (dist_sq(site(s), middle).sqrt() - radius).abs();
             2.0 * radius * miss <= share * h * h
         };
@@ -146,14 +151,16 @@ fn greedy(samples: &Samples, poles: &Poles, graph: &SampleGraph, share: f64) -> 
                     continue;
                 }
                 let other = centre(p);
+                let small = balls.sites[p as usize][3].sqrt() * step;
                 let same_side = |s: u32| {
                     let (a, b) = (sub(middle, site(s)), sub(other, site(s)));
                     dot(a, b) > 0.5 * norm(a) * norm(b)
                 };
-                let redundant = balls
-                    .touching(p)
-                    .iter()
-                    .all(|&t| covered[t as usize] == c && same_side(t));
+                let redundant = balls.touching(p).iter().all(|&t| {
+                    covered[t as usize] == c
+                        && 2.0 * graph.spacing[t as usize] <= small
+                        && same_side(t)
+                });
                 if redundant {
                     settled[p as usize] = true;
                     stands_for[p as usize] = c;
@@ -213,8 +220,8 @@ fn renumber(poles: Poles, stands_for: &[u32]) -> Poles {
     let of_sample = poles
         .of_sample
         .iter()
-        .map(|pair| {
-            pair.map(|b| {
+        .map(|own| {
+            own.map(|b| {
                 if b == NO_POLE {
                     NO_POLE
                 } else {
