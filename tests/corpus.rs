@@ -41,10 +41,7 @@ fn clouds(folder: &Path) -> Vec<PathBuf> {
 fn reconstructed(path: &Path) -> (usize, i64) {
     let name = path.display().to_string();
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{name}: {e}"));
-    let options = ReadOptions {
-        skip_invalid: true,
-        ..ReadOptions::default()
-    };
+    let options = ReadOptions { skip_invalid: true };
     let cloud = read_cloud(&bytes, CloudFormat::sniff(&bytes), &options)
         .unwrap_or_else(|e| panic!("{name}: {e}"));
     let result = crust(&name, &cloud.points, &Options::default());
