@@ -22,9 +22,17 @@ mod wide;
 pub use check::{check, CheckOptions};
 pub use distance::Surface;
 pub use measure::{component_volumes, components};
+pub use nesting::enclosing;
 pub use report::{Counts, Finding, Report, Shell};
 
 use crate::geom::Point;
+
+/// The triangles that the faces of a mesh fall into, in their order, cut as
+/// [`check()`] cuts them; faces that cannot be walked are left out.
+pub fn triangles(mesh: &PolygonMesh) -> Vec<[u32; 3]> {
+    let faces = soup::Faces::of(mesh, |_, _| ());
+    faces.triangles(&frame::Frame::new(&mesh.vertices)).corners
+}
 
 /// A polygon mesh: vertex positions, and faces as runs of vertex indices,
 /// counterclockwise seen from outside.
