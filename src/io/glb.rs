@@ -3,7 +3,8 @@
 //! The format has only 32-bit floats, so the positions are taken from the
 //! middle of the mesh, which is itself a triple of 32-bit numbers and becomes
 //! the translation of the one node: a scan far from the origin keeps its
-//! detail. Axes are left as they are (glTF says that y is up). Colours are
+//! detail. (A mesh whose coordinates are 32-bit numbers already is written as
+//! it is, with the translation 0.) Axes are left as they are (glTF says that y is up). Colours are
 //! light intensities there: bytes, which follow the sRGB curve, become linear
 //! 16-bit numbers. Polygons are cut into triangles as the checker cuts them.
 
@@ -24,8 +25,13 @@ const FLOAT: u32 = 5126;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
-/// The middle that positions are counted from.
+/// The middle that positions are counted from: the origin where all vertices
+/// are 32-bit numbers as they are, so that those are not rounded again.
 fn middle(vertices: &[Point]) -> Point {
+    let single = |&c: &f64| f64::from(c as f32) == c;
+    if vertices.iter().flatten().all(single) {
+        return [0.0; 3];
+    }
     match Bounds::of(vertices) {
         Some(b) => std::array::from_fn(|k| f64::from((b.min[k] / 2.0 + b.max[k] / 2.0) as f32)),
         None => [0.0; 3],
