@@ -195,6 +195,19 @@ pub struct Reconstruct {
     #[arg(long, help_heading = SURFACE)]
     pub drop_cavities: bool,
 
+    /// Reduce the mesh to so many triangles.
+    ///
+    /// Vertices that stay are where they were; those whose loss moves the
+    /// surface least go first. The mesh stays closed, manifold and free of
+    /// crossings; where that allows no further step, the run ends with more
+    /// triangles than asked for and says so.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..), conflicts_with_all = ["polygons", "reduce"], help_heading = SURFACE)]
+    pub faces: Option<u32>,
+
+    /// Reduce the mesh to one R-th of its triangles, R > 1: see --faces.
+    #[arg(long, value_name = "R", value_parser = wanted::reduce, conflicts_with = "polygons", help_heading = SURFACE)]
+    pub reduce: Option<f64>,
+
     /// Values to write with the mesh: `all`, `none`, or names between commas.
     ///
     /// Names: sample (the input point at each vertex, -1 for none), normals,

@@ -15,7 +15,7 @@ use super::fail::{name, reason, Failure};
 use super::formats::{axis_format, extension, input_format, mesh_format, poles_format};
 use super::output::Target;
 use super::show::Talk;
-use super::wanted::Wanted;
+use super::wanted::{Fewer, Wanted};
 
 /// The skinniness bound `--sharp` takes when none is given: near it the error
 /// at edges is least (a cube of 10,000 random samples: 0.0005 with 0.4, 0.015
@@ -33,6 +33,8 @@ pub struct Plan {
     pub threads: Option<NonZeroUsize>,
     /// Which parts to keep.
     pub shells: ShellFilter,
+    /// How many triangles to reduce to.
+    pub fewer: Option<Fewer>,
     /// Which values the mesh carries.
     pub attributes: Wanted,
     pub write: WriteOptions,
@@ -106,6 +108,7 @@ impl Plan {
                 min_volume: args.min_volume,
                 drop_cavities: args.drop_cavities,
             },
+            fewer: (args.faces.map(|n| Fewer::Faces(n as usize))).or(args.reduce.map(Fewer::OneIn)),
             attributes: args.attributes.clone().unwrap_or_default(),
             json: args.json,
             check: args.check,

@@ -2,8 +2,9 @@
 //! triangles reduced, values attached.
 
 use powercrust::io::{Attribute, AttributeValues, Cloud, MeshAttributes};
+use powercrust::mesh::{decimate, deviation, DecimateError, Deviation};
 use powercrust::surface::{filter_shells, Selection, Shells, NONE};
-use powercrust::{Context, Reconstruction};
+use powercrust::{Context, Crust, Reconstruction};
 
 use super::fail::{Code, Failure};
 use super::plan::Plan;
@@ -180,6 +181,22 @@ pub struct Product {
     pub before: Shells,
     /// Parts and cavities written.
     pub shells: Shells,
+    pub reduced: Option<Reduced>,
+}
+
+/// What reducing the triangles came to.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct Reduced {
+    /// Triangles before.
+    pub from: usize,
+    /// Triangles asked for.
+    pub asked: usize,
+    /// Triangles left.
+    pub faces: usize,
+    /// Collapses not made because faces would have met.
+    pub refused: u64,
+    /// How far the surface moved.
+    pub moved: Deviation,
 }
 
 /// Makes the crust of `result` what the plan asks for.
@@ -187,7 +204,7 @@ pub fn make(
     plan: &Plan,
     cloud: &Cloud,
     result: &mut Reconstruction,
-    _context: &Context,
+    context: &Context,
 ) -> Result<Product, Failure> {
     let before = Shells::of(&result.crust.mesh);
     let mut carried = Carried::of(&plan.attributes, cloud, result, &before)?;
@@ -206,9 +223,50 @@ pub fn make(
         result.crust = crust;
         shells = Shells::of(&result.crust.mesh);
     }
+    let reduced = match plan.fewer {
+        None => None,
+        Some(fewer) => {
+            let asked = fewer.of(result.crust.mesh.face_count());
+            let (selection, reduced) = reduce(&mut result.crust, asked, context)?;
+            carried.select(&selection);
+            Some(reduced)
+        }
+    };
     Ok(Product {
         carried,
         before,
         shells,
+        reduced,
     })
+}
+
+/// Reduces the triangles of the crust.
+fn reduce(
+    crust: &mut Crust,
+    asked: usize,
+    context: &Context,
+) -> Result<(Selection, Reduced), Failure> {
+    let fewer = decimate(&crust.mesh, asked, context).map_err(|error| match error {
+        DecimateError::Cancelled => Failure::interrupted(),
+        other => Failure::new(Code::Unfit, format!("the mesh cannot be reduced: {other}"))
+            .hint("leave --faces and --reduce out; please report this with the input"),
+    })?;
+    let moved = deviation(&crust.mesh, &fewer.mesh, context).map_err(|_| Failure::interrupted())?;
+    let reduced = Reduced {
+        from: crust.mesh.face_count(),
+        asked,
+        faces: fewer.mesh.face_count(),
+        refused: fewer.refused,
+        moved,
+    };
+    let selection = Selection {
+        vertices: fewer.vertices,
+        faces: fewer.faces,
+    };
+    *crust = Crust {
+        vertex_samples: selection.of_vertices(&crust.vertex_samples),
+        face_balls: selection.of_faces(&crust.face_balls),
+        mesh: fewer.mesh,
+    };
+    Ok((selection, reduced))
 }

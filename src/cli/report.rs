@@ -11,12 +11,13 @@ use serde_json::{json, Value};
 use super::fail::name;
 use super::output::Target;
 use super::plan::Plan;
-use super::product::Product;
+use super::product::{Product, Reduced};
 use super::show::{counted, grouped, Talk};
 
 /// What the run found, for the summary, `--json` and `--stats`.
 pub struct Report {
     findings: Findings,
+    reduced: Option<Reduced>,
     parts: usize,
     cavities: usize,
     samples: usize,
@@ -79,6 +80,9 @@ impl Report {
                 "cavities": all.cavities.len() - kept.cavities.len(),
             });
         }
+        if let Some(reduced) = &product.reduced {
+            head["reduced"] = json!(reduced);
+        }
         let mut stats = head.clone();
         stats["stats"] = json!(result.stats);
         let mut summary = head;
@@ -98,6 +102,7 @@ impl Report {
         }
         Ok(Report {
             findings,
+            reduced: product.reduced,
             parts: kept.part_volumes.len(),
             cavities: kept.cavities.len(),
             samples: result.stats.samples,
@@ -146,6 +151,13 @@ impl Report {
         }
         if let Some(genus) = found.genus {
             parts.push(format!("genus {genus}"));
+        }
+        if let Some(reduced) = &self.reduced {
+            let moved = 100.0 * reduced.moved.mean_of_diagonal;
+            parts.push(format!("moved by {moved:.2e} % of the diagonal"));
+            if reduced.faces > reduced.asked + 1 {
+                parts.push(format!("not fewer ({} asked for)", grouped(reduced.asked)));
+            }
         }
         if !found.is_closed() {
             parts.push("not closed (a bug: please report it)".to_owned());

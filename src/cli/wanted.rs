@@ -101,6 +101,33 @@ pub fn min_volume(text: &str) -> Result<MinVolume, String> {
     }
 }
 
+/// Reads a factor above 1.
+pub fn reduce(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(factor) if factor > 1.0 && factor.is_finite() => Ok(factor),
+        _ => Err("expected a number above 1".to_owned()),
+    }
+}
+
+/// How many triangles to reduce to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fewer {
+    /// So many.
+    Faces(usize),
+    /// One in so many.
+    OneIn(f64),
+}
+
+impl Fewer {
+    /// The number, of a mesh of so many triangles.
+    pub fn of(self, faces: usize) -> usize {
+        match self {
+            Fewer::Faces(n) => n,
+            Fewer::OneIn(factor) => ((faces as f64 / factor) as usize).max(4),
+        }
+    }
+}
+
 /// Reads a number of bytes with a unit of 1024: `800M`, `2G`, `1.5GiB`.
 pub fn size(text: &str) -> Result<u64, String> {
     let at = text
