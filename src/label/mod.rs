@@ -10,10 +10,12 @@
 //! the geometry; so the labels depend on neither threads nor hashing.
 
 mod energy;
+mod hold;
 mod propagate;
 mod refine;
 
 pub use energy::{energy, Energy};
+pub use hold::{hold, Held, MOST_UNHELD};
 pub use propagate::label;
 pub use refine::refine;
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::NO_POLE;
 use crate::delaunay::Delaunay;
-use crate::geom::Point;
+use crate::geom::{Ball, Point};
 use crate::predicates::Site;
 use crate::tetra::order;
 
@@ -56,6 +56,35 @@ impl Balls {
     /// Whether there is no ball.
     pub fn is_empty(&self) -> bool {
         self.sites.is_empty()
+    }
+
+    /// The balls in lattice steps of the samples.
+    pub fn on_lattice(&self) -> Vec<Ball> {
+        let step = self.lattice.step();
+        let ball = |s: &Site| Ball::new([s[0], s[1], s[2]].map(|v| v * step), s[3].sqrt() * step);
+        self.sites.par_iter().map(ball).collect()
+    }
+
+    /// Appends a ball that touches the given samples, ascending.
+    pub fn push(&mut self, site: Site, touched: &[u32]) {
+        self.sites.push(site);
+        self.touched.extend_from_slice(touched);
+        self.touch_starts.push(self.touched.len() as u32);
+        self.touches_frame.push(false);
+    }
+
+    /// Adds samples to those the last ball touches.
+    pub fn touch_last(&mut self, touched: &[u32]) {
+        let Some(last) = self.len().checked_sub(1) else {
+            return;
+        };
+        let from = self.touch_starts[last] as usize;
+        let mut all = self.touched.split_off(from);
+        all.extend_from_slice(touched);
+        all.sort_unstable();
+        all.dedup();
+        self.touched.extend_from_slice(&all);
+        self.touch_starts[last + 1] = self.touched.len() as u32;
     }
 
     /// The samples ball `b` touches, ascending.
@@ -110,7 +139,6 @@ pub(super) fn gather(
         .collect();
     sequence.sort_unstable();
 
-    let step = lattice.step();
     let mut balls = Balls {
         sites: Vec::with_capacity(count),
         lattice,
@@ -135,14 +163,7 @@ pub(super) fn gather(
         corners.sort_unstable();
         corners.dedup();
         let centre = keyed[from].1;
-        let nearest = corners
-            .iter()
-            .map(|&v| power_weight(centre, &delaunay.sites[v as usize]))
-            .fold(f64::INFINITY, f64::min);
-        let weight = (nearest / (step * step)).round();
-        balls
-            .sites
-            .push([centre[0] / step, centre[1] / step, centre[2] / step, weight]);
+        balls.sites.push(site(delaunay, centre, &corners, lattice));
         let real = corners.iter().filter(|&&v| !delaunay.is_frame(v));
         balls.touched.extend(real);
         balls.touch_starts.push(balls.touched.len() as u32);
@@ -163,6 +184,23 @@ pub(super) fn gather(
         })
         .collect();
     (balls, of_sample)
+}
+
+/// The ball about a centre (in lattice steps of the samples) that reaches the
+/// nearest of its samples, as a site.
+pub(super) fn site(
+    delaunay: &Delaunay,
+    centre: Point,
+    corners: &[u32],
+    lattice: BallLattice,
+) -> Site {
+    let step = lattice.step();
+    let nearest = corners
+        .iter()
+        .map(|&v| power_weight(centre, &delaunay.sites[v as usize]))
+        .fold(f64::INFINITY, f64::min);
+    let weight = (nearest / (step * step)).round();
+    [centre[0] / step, centre[1] / step, centre[2] / step, weight]
 }
 
 /// The squared distance from a centre to a sample, in floats: exact to one

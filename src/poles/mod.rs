@@ -15,10 +15,12 @@
 //! ids depend on nothing but the set of samples.
 
 mod balls;
+mod candidates;
 mod select;
 mod skinny;
 
 pub use balls::{BallLattice, Balls};
+pub use candidates::Candidates;
 
 use crate::context::{Cancelled, Context, Stage};
 use crate::delaunay::{Delaunay, Samples};

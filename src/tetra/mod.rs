@@ -15,7 +15,7 @@ mod complex;
 mod frame;
 pub mod order;
 
-pub use build::{triangulate, Triangulation};
+pub use build::{extend, locate, triangulate, Triangulation};
 pub use complex::{facet_of, pack, unpack, Complex, FACETS, NONE};
 
 use crate::predicates::{conflict, conflict_weighted, orient, Counts, Sign, Site};
