@@ -9,9 +9,11 @@
 //! Equal priorities are told apart by ball id, which is itself a function of
 //! the geometry; so the labels depend on neither threads nor hashing.
 
+mod check;
 mod energy;
 mod propagate;
 
+pub use check::{check, Finding};
 pub use energy::{energy, Energy};
 pub use propagate::label;
 

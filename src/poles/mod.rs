@@ -15,10 +15,12 @@
 //! ids depend on nothing but the set of samples.
 
 mod balls;
+mod check;
 mod select;
 mod skinny;
 
 pub use balls::{BallLattice, Balls};
+pub use check::{check, Finding};
 
 use crate::context::{Cancelled, Context, Stage};
 use crate::delaunay::{Delaunay, Samples};

@@ -3,7 +3,8 @@
 use super::cavity::Workspace;
 use super::complex::{unpack, Complex, NONE};
 use super::{frame, Conflict};
-use crate::context::{Cancelled, Context, Stage};
+use crate::context::{Context, Stage};
+use crate::error::Error;
 use crate::predicates::{Counts, Sign};
 
 /// Sites inserted between two reports of progress.
@@ -23,12 +24,17 @@ pub struct Triangulation {
 /// Triangulates the sites `0..count` of `test` inside the frame of the sites
 /// `count..count + 8`. Sites are inserted in the order of their ids: number
 /// them along a space-filling curve ([`super::order`]).
+///
+/// # Errors
+/// [`Error::Cancelled`], and [`Error::TooLarge`] beyond [`super::MOST_CELLS`]
+/// cells: 160 million sites in general position, 65 thousand on two skew
+/// lines.
 pub fn triangulate<C: Conflict>(
     test: &C,
     count: u32,
     stage: Stage,
     context: &Context,
-) -> Result<Triangulation, Cancelled> {
+) -> Result<Triangulation, Error> {
     let mut counts = Counts::default();
     let start = frame::frame(test, count, &mut counts);
     let mut work = Workspace::new(count as usize + 8, start.cells, start.neighbours);
@@ -37,8 +43,8 @@ pub fn triangulate<C: Conflict>(
         if p % REPORT == 0 {
             context.advance(stage, p as u64, count as u64)?;
         }
-        let cell = walk(test, &work, hint, p, &mut counts);
-        hint = work.insert(test, p, cell, &mut counts).unwrap_or(cell);
+        let cell = walk(test, (&work.cells, &work.neighbours), hint, p, &mut counts);
+        hint = work.insert(test, p, cell, &mut counts)?.unwrap_or(cell);
     }
     context.advance(stage, count as u64, count as u64)?;
     let hidden = std::mem::take(&mut work.hidden);
@@ -56,12 +62,18 @@ pub fn triangulate<C: Conflict>(
 /// cell. In a regular triangulation, with exact signs, it cannot go round in
 /// circles (Edelsbrunner 1990).
 #[inline]
-fn walk<C: Conflict>(test: &C, work: &Workspace, hint: u32, p: u32, counts: &mut Counts) -> u32 {
+pub(super) fn walk<C: Conflict>(
+    test: &C,
+    (cells, neighbours): (&[[u32; 4]], &[[u32; 4]]),
+    hint: u32,
+    p: u32,
+    counts: &mut Counts,
+) -> u32 {
     let mut at = hint;
     let mut from = NONE;
     'cell: loop {
-        let cell = work.cells[at as usize];
-        let behind = work.neighbours[at as usize];
+        let cell = cells[at as usize];
+        let behind = neighbours[at as usize];
         for i in 0..4 {
             let next = behind[i];
             if next == NONE || next >> 2 == from {

@@ -341,7 +341,11 @@ fn axes_come_back_the_same() {
 pub fn polar_balls() -> Vec<PolarBall> {
     let ball = |k: u32| PolarBall {
         ball: Ball::new([f64::from(k), 0.1, 0.2], f64::from(k)),
-        side: if k.is_multiple_of(2) { Side::Inner } else { Side::Outer },
+        side: if k.is_multiple_of(2) {
+            Side::Inner
+        } else {
+            Side::Outer
+        },
         sample: if k == 2 { NONE } else { k },
     };
     (0..4).map(ball).collect()
