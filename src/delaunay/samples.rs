@@ -21,8 +21,12 @@ use crate::tetra::order;
 const FRAME_HALF: f64 = 10_995_116_277_760.0; // 5 * 2^41
 
 /// Samples closer to a common plane or line than this many lattice steps are
-/// taken to lie on it.
+/// taken to lie on it. Far off the origin, a few steps between floats are
+/// added, up to `FLAT_SHARE` of the cloud: a tilted plane there is one only
+/// but for the rounding of its points.
 const FLAT: f64 = 8.0;
+const FLAT_ULPS: f64 = 4.0;
+const FLAT_SHARE: f64 = 0.001;
 
 /// The map between the user's coordinates and the lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,7 +190,7 @@ pub fn samples(points: &[Point], box_factor: f64) -> Result<Samples, SampleError
         made.source.push(keyed[from].1);
         made.multiplicity.push((to - from) as u32);
     }
-    spans_space(&made.sites, given)?;
+    spans_space(&made, given)?;
     Ok(made)
 }
 
@@ -237,9 +241,13 @@ fn exponent(v: f64) -> i32 {
 }
 
 /// Refuses samples on one line or in one plane, exactly or to within
-/// [`FLAT`] lattice steps.
-fn spans_space(sites: &[Site], given: usize) -> Result<(), SampleError> {
+/// [`FLAT`] lattice steps and the rounding of the input.
+fn spans_space(samples: &Samples, given: usize) -> Result<(), SampleError> {
     use crate::geom::vec3::{cross, dist_sq, dot, norm, sub};
+    let (sites, lattice) = (&samples.sites, &samples.lattice);
+    let largest = lattice.centre.map(f64::abs).into_iter().fold(0.0, f64::max);
+    let rounding = times_power(largest * f64::EPSILON, lattice.exponent) * FLAT_ULPS;
+    let tolerance = FLAT + rounding.min(lattice.sample_half * FLAT_SHARE);
     let at = |s: &Site| [s[0], s[1], s[2]];
     let farthest = |measure: &dyn Fn(Point) -> f64| {
         let mut best = (0usize, -1.0);
@@ -256,13 +264,13 @@ fn spans_space(sites: &[Site], given: usize) -> Result<(), SampleError> {
     let b = at(&sites[far]);
     let along = sub(b, a);
     let (off, area) = farthest(&|p| norm(cross(sub(p, a), along)));
-    if area <= FLAT * norm(along) {
+    if area <= tolerance * norm(along) {
         return Err(SampleError::Collinear { given });
     }
     let c = at(&sites[off]);
     let normal = cross(along, sub(c, a));
     let (above, volume) = farthest(&|p| dot(sub(p, a), normal).abs());
-    let flat = volume <= FLAT * norm(normal);
+    let flat = volume <= tolerance * norm(normal);
     let mut counts = Counts::default();
     let corners = [&sites[0], &sites[far], &sites[off], &sites[above]];
     let exact = orient(corners[0], corners[1], corners[2], corners[3], &mut counts);

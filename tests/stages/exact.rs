@@ -45,7 +45,7 @@ pub fn six_volumes(v: [Whole; 4]) -> i128 {
 /// and a site after it, the site lies below the cell's lifted plane when this
 /// is positive.
 fn lifted(v: [Whole; 5], heights: [i128; 5]) -> i128 {
-    -det([0, 1, 2, 3, 4].map(|k| [heights[k], v[k][0], v[k][1], v[k][2], 1]))
+    det([0, 1, 2, 3, 4].map(|k| [heights[k], v[k][0], v[k][1], v[k][2], 1]))
 }
 
 /// By how much the last site is in conflict with the positive cell before it,

@@ -4,8 +4,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod crust;
 mod exact;
 mod labels;
+mod merge;
 mod poles;
 mod power;
 mod run;

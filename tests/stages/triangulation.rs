@@ -87,7 +87,7 @@ fn small_sets_have_the_cells_of_the_definition() {
         let all = framed(&sites);
         let made = delaunay(&all);
         assert_sound(&name, &InSphere(&all), &made);
-        assert_eq!(cells(&all, &made.complex), exact::cells(&all), "{name}");
+        assert!(cells(&all, &made.complex) == exact::cells(&all), "{name}");
         assert!(made.hidden.is_empty(), "{name}");
     }
 }
@@ -122,7 +122,7 @@ fn assert_regular(name: &str, sites: &[Site]) -> usize {
     let made = regular(&all);
     assert_sound(name, &InPower(&all), &made);
     let expected = exact::cells(&all);
-    assert_eq!(cells(&all, &made.complex), expected, "{name}");
+    assert!(cells(&all, &made.complex) == expected, "{name}");
     let with_cells: BTreeSet<Whole> = expected.iter().flatten().copied().collect();
     let without = |v: &u32| !with_cells.contains(&exact::whole(&all[*v as usize]));
     let expected: Vec<u32> = (0..all.len() as u32).filter(without).collect();
@@ -206,11 +206,11 @@ fn the_order_of_insertion_does_not_matter() {
             random.shuffle(&mut kept);
             let all = framed(&kept);
             let made = regular(&all);
-            assert_eq!(cells(&all, &made.complex), balls, "{name}");
+            assert!(cells(&all, &made.complex) == balls, "{name}");
             assert_eq!(sites_of(&all, &made.hidden), hidden, "{name}");
             let flat: Vec<Site> = kept.iter().map(|s| [s[0], s[1], s[2], 0.0]).collect();
             let all = framed(&flat);
-            assert_eq!(cells(&all, &delaunay(&all).complex), points, "{name}");
+            assert!(cells(&all, &delaunay(&all).complex) == points, "{name}");
         }
     }
 }
