@@ -15,8 +15,9 @@
 use rayon::prelude::*;
 
 use super::Labels;
-use crate::context::{Cancelled, Context};
+use crate::context::Context;
 use crate::delaunay::Delaunay;
+use crate::error::Error;
 use crate::geom::Side;
 use crate::poles::{Balls, Candidates};
 use crate::power::PowerDiagram;
@@ -45,7 +46,7 @@ pub fn hold(
     labels: &mut Labels,
     most: f64,
     context: &Context,
-) -> Result<Held, Cancelled> {
+) -> Result<Held, Error> {
     let unheld = unheld(delaunay.samples, balls, &labels.sides);
     let mut held = Held {
         unheld: unheld.len() as u32,

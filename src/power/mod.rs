@@ -6,8 +6,13 @@
 //! every other cell is then bounded, so whatever the labels, the faces between
 //! unlike cells close up as long as the sentinels count as outer.
 
-use crate::context::{Cancelled, Context, Stage};
+mod check;
+
+pub use check::{check, Finding};
+
+use crate::context::{Context, Stage};
 use crate::delaunay::{circumcentre, corners, Centre};
+use crate::error::Error;
 use crate::predicates::{Counts, Site, LIMIT};
 use crate::tetra::{extend, locate, triangulate, Complex, InPower, NONE};
 
@@ -80,7 +85,7 @@ impl PowerDiagram {
     }
 
     /// Inserts more balls: they get the ids after the present ones.
-    pub fn extend(&mut self, balls: &[Site], context: &Context) -> Result<(), Cancelled> {
+    pub fn extend(&mut self, balls: &[Site], context: &Context) -> Result<(), Error> {
         if balls.is_empty() {
             return Ok(());
         }
@@ -126,14 +131,23 @@ impl PowerDiagram {
 }
 
 /// Builds the power diagram of balls on a lattice: integer centres of at most
-/// `LIMIT / scale / 4` in size, integer squared radii, no two centres equal; number them
+/// `LIMIT / scale / 2` in size, integer squared radii, no two centres equal; number them
 /// along a space-filling curve. `scale` is the lattice's step in steps of the
 /// samples' lattice.
-pub fn power_diagram(
-    balls: &[Site],
-    scale: f64,
-    context: &Context,
-) -> Result<PowerDiagram, Cancelled> {
+///
+/// # Errors
+/// [`Error::TooLarge`] and [`Error::Cancelled`].
+///
+/// ```
+/// use powercrust::{power, Context};
+/// // A ball of radius 5 hides a smaller one inside it.
+/// let balls = [[0.0, 0.0, 0.0, 25.0], [1.0, 0.0, 0.0, 4.0], [9.0, 0.0, 0.0, 4.0]];
+/// let diagram = power::power_diagram(&balls, 1024.0, &Context::default())?;
+/// assert_eq!(diagram.hidden, [1]);
+/// assert_eq!(power::check(&diagram), []);
+/// # Ok::<(), powercrust::Error>(())
+/// ```
+pub fn power_diagram(balls: &[Site], scale: f64, context: &Context) -> Result<PowerDiagram, Error> {
     let mut sites = balls.to_vec();
     sites.extend(corners(LIMIT / scale));
     let built = triangulate(&InPower(&sites), balls.len() as u32, Stage::Power, context)?;

@@ -40,6 +40,26 @@ const EDGES: [[usize; 4]; 6] = [
 const CORNERS: [u32; 5] = [0, 3, 4, 3, 0];
 
 /// Extracts the crust. Sentinels count as outer.
+///
+/// ```
+/// use powercrust::surface::{raw_crust, Placement};
+/// use powercrust::{power, Context, Side};
+/// // One inner ball among six outer ones: its cell is a cube.
+/// let mut balls = vec![[0.0, 0.0, 0.0, 1.0]];
+/// for axis in 0..3 { for side in [-8.0, 8.0] {
+///     let mut ball = [0.0, 0.0, 0.0, 1.0];
+///     ball[axis] = side;
+///     balls.push(ball);
+/// }}
+/// let diagram = power::power_diagram(&balls, 1024.0, &Context::default())?;
+/// let mut sides = vec![Side::Outer; 7];
+/// sides[0] = Side::Inner;
+/// let place = Placement { touching: &|_| &[], sample: &|_| [0.0; 3], to_user: &|p| p };
+/// let crust = raw_crust(&diagram, &sides, &place);
+/// assert_eq!(crust.balls.len(), 6);
+/// assert!(crust.positions.iter().flatten().all(|v| v.abs() == 4.0));
+/// # Ok::<(), powercrust::Error>(())
+/// ```
 pub fn raw_crust(power: &PowerDiagram, sides: &[Side], place: &Placement) -> RawCrust {
     let cells = &power.complex.cells;
     // Which vertices of each cell are inner, as bits.

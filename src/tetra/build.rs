@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::cavity::Workspace;
-use super::complex::{unpack, Complex, NONE};
+use super::complex::{unpack, Complex, MOST_CELLS, NONE};
 use super::{frame, Conflict};
-use crate::context::{Cancelled, Context, Stage};
+use crate::context::{Context, Stage};
+use crate::error::Error;
 use crate::predicates::{orient, Counts, Sign, Site};
 
 /// Sites inserted between two reports of progress.
@@ -25,15 +26,32 @@ pub struct Triangulation {
 /// Triangulates the sites `0..count` of `test` inside the frame of the sites
 /// `count..count + 8`. Sites are inserted in the order of their ids: number
 /// them along a space-filling curve ([`super::order`]).
+///
+/// # Errors
+/// [`Error::Cancelled`], and [`Error::TooLarge`] beyond [`super::MOST_CELLS`]
+/// cells: 160 million sites in general position, 65 thousand on two skew
+/// lines.
 pub fn triangulate<C: Conflict>(
     test: &C,
     count: u32,
     stage: Stage,
     context: &Context,
-) -> Result<Triangulation, Cancelled> {
+) -> Result<Triangulation, Error> {
+    grow(test, count, MOST_CELLS, stage, context)
+}
+
+/// [`triangulate`] within a number of cells.
+fn grow<C: Conflict>(
+    test: &C,
+    count: u32,
+    most: usize,
+    stage: Stage,
+    context: &Context,
+) -> Result<Triangulation, Error> {
     let mut counts = Counts::default();
     let start = frame::frame(test, count, &mut counts);
-    let work = Workspace::new(count as usize + 8, start.cells, start.neighbours);
+    let mut work = Workspace::new(count as usize + 8, start.cells, start.neighbours);
+    work.most = most;
     insert(test, work, 0..count, counts, stage, context)
 }
 
@@ -44,7 +62,7 @@ pub fn extend<C: Conflict>(
     more: Range<u32>,
     stage: Stage,
     context: &Context,
-) -> Result<Triangulation, Cancelled> {
+) -> Result<Triangulation, Error> {
     let work = Workspace::new(test.sites().len(), complex.cells, complex.neighbours);
     insert(test, work, more, Counts::default(), stage, context)
 }
@@ -56,7 +74,7 @@ fn insert<C: Conflict>(
     mut counts: Counts,
     stage: Stage,
     context: &Context,
-) -> Result<Triangulation, Cancelled> {
+) -> Result<Triangulation, Error> {
     let (first, total) = (sites.start, sites.len() as u64);
     let mut hint = 0;
     for p in sites {
@@ -72,7 +90,7 @@ fn insert<C: Conflict>(
             site,
             &mut counts,
         );
-        hint = work.insert(test, p, cell, &mut counts).unwrap_or(cell);
+        hint = work.insert(test, p, cell, &mut counts)?.unwrap_or(cell);
     }
     context.advance(stage, total, total)?;
     let mut hidden = std::mem::take(&mut work.hidden);
@@ -175,4 +193,72 @@ fn compact(work: Workspace) -> Complex {
     cells.shrink_to_fit();
     neighbours.shrink_to_fit();
     Complex { cells, neighbours }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::InSphere;
+    use super::*;
+    use crate::predicates::Site;
+
+    /// Two skew lines inside a frame: cells as the square of the sites.
+    fn skew_lines(count: i32) -> Vec<Site> {
+        let mut sites: Vec<Site> = (0..count)
+            .flat_map(|k| [[k, 0, -9, 0], [0, k, 9, 0]])
+            .map(|p| p.map(f64::from))
+            .collect();
+        let side = |k: i32, bit: i32| f64::from((k >> bit & 1) * 200 - 100);
+        sites.extend((0..8).map(|k| [side(k, 0), side(k, 1), side(k, 2), 0.0]));
+        sites
+    }
+
+    fn within(sites: &[Site], most: usize) -> Result<Triangulation, Error> {
+        let count = sites.len() as u32 - 8;
+        let (stage, context) = (Stage::Delaunay, Context::default());
+        grow(&InSphere(sites), count, most, stage, &context)
+    }
+
+    #[test]
+    fn too_many_cells_are_an_error_before_an_id_wraps() {
+        let sites = skew_lines(20);
+        let free = within(&sites, MOST_CELLS).unwrap();
+        let cells = free.complex.len();
+        assert!(cells > 400, "{cells}");
+        match within(&sites, cells / 2) {
+            Err(Error::TooLarge { count, limit, .. }) => {
+                assert_eq!(limit, cells as u64 / 2);
+                assert!(count > limit && count < limit + 100, "{count}");
+            }
+            other => panic!("{other:?}"),
+        }
+        // Slots in use may outnumber the cells at the end, not by much.
+        assert_eq!(
+            within(&sites, cells + 50).unwrap().complex.cells,
+            free.complex.cells
+        );
+    }
+
+    #[test]
+    fn the_last_facet_fits_and_is_no_sentinel() {
+        let last = super::super::pack(MOST_CELLS as u32 - 1, 3);
+        assert_eq!(unpack(last), (MOST_CELLS as u32 - 1, 3));
+        assert!(last < NONE);
+    }
+
+    #[test]
+    fn breaking_off_stops_the_work() {
+        struct Stop;
+        impl crate::context::Progress for Stop {
+            fn advance(&self, _: Stage, _: u64, _: u64) -> std::ops::ControlFlow<()> {
+                std::ops::ControlFlow::Break(())
+            }
+        }
+        let sites = skew_lines(4);
+        let context = Context {
+            threads: None,
+            progress: &Stop,
+        };
+        let stopped = triangulate(&InSphere(&sites), 8, Stage::Delaunay, &context);
+        assert_eq!(stopped.unwrap_err(), Error::Cancelled);
+    }
 }

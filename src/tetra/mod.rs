@@ -11,12 +11,14 @@
 
 mod build;
 mod cavity;
+mod check;
 mod complex;
 mod frame;
 pub mod order;
 
 pub use build::{extend, locate, triangulate, Triangulation};
-pub use complex::{facet_of, pack, unpack, Complex, FACETS, NONE};
+pub use check::{check, Finding};
+pub use complex::{facet_of, pack, unpack, Complex, FACETS, MOST_CELLS, NONE};
 
 use crate::predicates::{conflict, conflict_weighted, orient, Counts, Sign, Site};
 
