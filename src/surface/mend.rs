@@ -29,10 +29,11 @@
 //! elsewhere (see the pipeline). That ends, for at the latest where no
 //! cell is inside no surface is left.
 
-use super::mend_coarsen::{area, coarsen, Coarsened};
+use super::mend_coarsen::{coarsen, Coarsened};
 use super::mend_local::{mend, Mended};
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
+use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context};
 use crate::geom::Point;
@@ -89,6 +90,7 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
         points.iter_mut().for_each(|p| *p = round(*p));
     }
     let mut mesh = TriMesh::new(crust, points, source);
+    let shells = Shells::of(&mesh);
     let mut done = Mending::default();
     if options.flatness > 0.0 {
         let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
@@ -102,11 +104,8 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
     mesh.free(&moved);
     for search in 0..SEARCHES {
         let tree = clash.tree(&mesh.points, &mesh.tris);
-        let mut pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
+        let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
         drop(tree);
-        pairs.extend(lost_areas(&mesh));
-        pairs.sort_unstable();
-        pairs.dedup();
         if search == 0 {
             done.found = pairs.len();
         }
@@ -115,7 +114,7 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
             break;
         }
         let (Mended { changes, samples_lost, rounds, .. }, left) =
-            mend(&mut mesh, &clash, pairs, &round, cx)?;
+            mend(&mut mesh, &clash, pairs, 0.0, &round, cx)?;
         done.changes += changes;
         done.samples_lost += samples_lost;
         done.rounds += rounds;
@@ -123,6 +122,13 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
         if changes == 0 {
             break;
         }
+    }
+    if done.left.is_empty() {
+        let least = least_area(&mesh);
+        let pairs = thin(&mesh, least);
+        let (Mended { changes, .. }, _) = mend(&mut mesh, &clash, pairs, least, &round, cx)?;
+        done.changes += changes;
+        done.samples_lost += shells.take_out_reversed(&mut mesh, &clash);
     }
     // The triangles left are told by the faces they come from.
     for pair in &mut done.left {
@@ -161,11 +167,4 @@ fn spread(mesh: &TriMesh, spacing: impl Fn(u32) -> f64) -> Vec<f64> {
     }
     known.iter_mut().filter(|l| !l.is_finite()).for_each(|l| *l = 0.0);
     known
-}
-
-/// Triangles so thin that sums of products of coordinates about the middle,
-/// as others compute areas, can come out as zero; paired with themselves.
-fn lost_areas(_mesh: &TriMesh) -> Vec<(u32, u32)> {
-    let _ = area;
-    Vec::new()
 }
