@@ -30,7 +30,7 @@
 //! cell is inside no surface is left.
 
 use super::mend_coarsen::{coarsen, Coarsened};
-use super::mend_local::{mend, Mended};
+use super::mend_local::mend;
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
 use super::mend_shell::{least_area, thin, Shells};
@@ -38,9 +38,6 @@ use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context};
 use crate::geom::Point;
 use crate::mesh::clash::Clash;
-
-/// Searches of all pairs, at most: one to find, the others to make sure.
-const SEARCHES: usize = 4;
 
 /// How to mend.
 pub struct MendOptions<'a> {
@@ -102,34 +99,27 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
     let moved = draw_apart(&mut mesh, &round);
     done.drawn_apart = moved.len();
     mesh.free(&moved);
-    for search in 0..SEARCHES {
-        let tree = clash.tree(&mesh.points, &mesh.tris);
-        let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
-        drop(tree);
-        if search == 0 {
-            done.found = pairs.len();
-        }
-        done.left.clear();
-        if pairs.is_empty() {
-            break;
-        }
-        let (Mended { changes, samples_lost, rounds, .. }, left) =
-            mend(&mut mesh, &clash, pairs, 0.0, &round, cx)?;
-        done.changes += changes;
-        done.samples_lost += samples_lost;
-        done.rounds += rounds;
-        done.left = left.iter().map(|&(s, t)| [s, t]).collect();
-        if changes == 0 {
-            break;
-        }
-    }
-    if done.left.is_empty() {
+    let tree = clash.tree(&mesh.points, &mesh.tris);
+    let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
+    done.found = pairs.len();
+    let (first, mut left) = mend(&mut mesh, &clash, tree, pairs, 0.0, &round, cx)?;
+    if left.is_empty() {
         let least = least_area(&mesh);
         let pairs = thin(&mesh, least);
-        let (Mended { changes, .. }, _) = mend(&mut mesh, &clash, pairs, least, &round, cx)?;
-        done.changes += changes;
+        if !pairs.is_empty() {
+            let tree = clash.tree(&mesh.points, &mesh.tris);
+            let (second, mut rest) = mend(&mut mesh, &clash, tree, pairs, least, &round, cx)?;
+            // What is no worse than thin may stay.
+            rest.retain(|&(s, t)| s != t || clash.is_flat(&mesh.place(s)));
+            left = rest;
+            done.changes += second.changes;
+        }
         done.samples_lost += shells.take_out_reversed(&mut mesh, &clash);
     }
+    done.changes += first.changes;
+    done.samples_lost += first.samples_lost;
+    done.rounds = first.rounds;
+    done.left = left.iter().map(|&(s, t)| [s, t]).collect();
     // The triangles left are told by the faces they come from.
     for pair in &mut done.left {
         *pair = pair.map(|t| mesh.source[t as usize]);

@@ -40,13 +40,14 @@ enum Change {
     Shift(u32, Point),
 }
 
-/// Mends `mesh`, whose bad pairs are `pairs`. `round` rounds a new position as
+/// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles. `round` rounds a new position as
 /// the file will hold it. Triangles count as bad whose vector area is not
 /// above `thin`; with 0 those that have exactly none. Tells the pairs that are
 /// left.
 pub(crate) fn mend(
     mesh: &mut TriMesh,
     clash: &Clash,
+    tree: Tree,
     pairs: Vec<(u32, u32)>,
     thin: f64,
     round: &dyn Fn(Point) -> Point,
@@ -56,7 +57,6 @@ pub(crate) fn mend(
     if pairs.is_empty() {
         return Ok((done, pairs));
     }
-    let tree = clash.tree(&mesh.points, &mesh.tris);
     let mut work = Work {
         changed: vec![false; mesh.tris.len()],
         changes: Vec::new(),
