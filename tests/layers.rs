@@ -34,9 +34,12 @@ const ROWS: [(&[&str], &str); 13] = [
         "sides of poles by the diagram; fewer poles by the samples. Neither \
          needs the other",
     ),
-    (&["surface"], "labelled cells become faces"),
     (&["options"], "what the user may say, and errors about it"),
-    (&["stats"], "what a run did, the options among it"),
+    (
+        &["stats"],
+        "what a run did, the options among it; the last stage fills in its part",
+    ),
+    (&["surface"], "labelled cells become faces"),
     (&["pipeline"], "the stages in order"),
     (
         &["io"],

@@ -13,7 +13,7 @@ mod voronoi;
 pub use check::{check, Finding};
 pub(crate) use samples::times_power;
 pub use samples::{samples, Lattice, Samples};
-pub use voronoi::{circumcentre, Centre};
+pub use voronoi::{circumcentre, rounded_circumcentre, Centre};
 
 use crate::context::{Context, Stage};
 use crate::error::Error;

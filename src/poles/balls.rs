@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::NO_POLE;
 use crate::delaunay::Delaunay;
-use crate::geom::{Ball, Point};
+use crate::geom::{vec3::dist_sq, Ball, Point};
 use crate::predicates::Site;
 use crate::tetra::order;
 
@@ -197,19 +197,11 @@ pub(super) fn site(
     let step = lattice.step();
     let nearest = corners
         .iter()
-        .map(|&v| power_weight(centre, &delaunay.sites[v as usize]))
+        .map(|&v| {
+            let s = &delaunay.sites[v as usize];
+            dist_sq(centre, [s[0], s[1], s[2]])
+        })
         .fold(f64::INFINITY, f64::min);
     let weight = (nearest / (step * step)).round();
     [centre[0] / step, centre[1] / step, centre[2] / step, weight]
-}
-
-/// The squared distance from a centre to a sample, in floats: exact to one
-/// part in 2^51, far below the noise of rounding the centre.
-fn power_weight(centre: Point, site: &Site) -> f64 {
-    let d = [
-        centre[0] - site[0],
-        centre[1] - site[1],
-        centre[2] - site[2],
-    ];
-    d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
 }
