@@ -52,6 +52,7 @@ fn main() {
         &pts,
         &Options {
             merge,
+            flatness: std::env::args().nth(4).map_or(0.05, |v| v.parse().unwrap()),
             ..Options::default()
         },
         &Context::default(),
@@ -77,5 +78,5 @@ fn main() {
         mx = mx.max(dist(g)); sum += a * dist(g); area += a;
     }
     for v in &m.vertices { vmax = vmax.max(dist(*v)); }
-    println!("polygons/sample {:.2} error max {:.2e} mean {:.2e} vertex max {:.2e}", st.polygons as f64 / st.samples as f64, mx, sum / area, vmax);
+    println!("polygons/sample {:.2} faces/sample {:.2} error max {:.2e} mean {:.2e} vertex max {:.2e}", st.polygons as f64 / st.samples as f64, st.faces as f64 / st.samples as f64, mx, sum / area, vmax);
 }

@@ -39,15 +39,23 @@ use crate::context::{Cancelled, Context};
 use crate::geom::Point;
 use crate::mesh::clash::Clash;
 
+/// The surface never moves by more than this share of the spacing, nor of the
+/// radius of the balls beside it.
+const MOST: f64 = 0.05;
+/// Moves by this share of the spacing are none.
+const NOTHING: f64 = 1e-6;
+
 /// How to mend.
 pub struct MendOptions<'a> {
-    /// How far the surface may move to lose a vertex that is no sample, in
-    /// lengths of the local spacing; 0 leaves all that do no harm.
+    /// How far the surface may move to lose a vertex that is no sample, as a
+    /// share of the sampling error `h² / 2r`; 0 leaves all that do no harm.
     pub flatness: f64,
     /// New positions are rounded to single precision, as those given are.
     pub single: bool,
     /// The spacing at each sample, in the units of the mesh.
     pub spacing: &'a (dyn Fn(u32) -> f64 + Sync),
+    /// The radius of each ball, in the units of the mesh.
+    pub radius: &'a (dyn Fn(u32) -> f64 + Sync),
 }
 
 /// A mended crust of triangles and what was done.
@@ -91,8 +99,17 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
     let mut done = Mending::default();
     if options.flatness > 0.0 {
         let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
-        let mut tolerance = spread(&mesh, |s| length((options.spacing)(s)));
-        tolerance.iter_mut().for_each(|t| *t *= options.flatness);
+        let spacing = spread(&mesh, |s| length((options.spacing)(s)));
+        let radii = radii(&mesh, |t| {
+            let balls = crust.face_balls[t as usize].iter().filter(|&&b| b != NONE);
+            balls.map(|&b| length((options.radius)(b))).fold(f64::INFINITY, f64::min)
+        });
+        let tolerance: Vec<f64> = (spacing.iter().zip(&radii))
+            .map(|(h, r)| {
+                let error = options.flatness * h * h / (2.0 * r);
+                error.min(MOST * h).min(MOST * r).max(NOTHING * h)
+            })
+            .collect();
         let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
     }
@@ -128,6 +145,19 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
     done.crust = mended;
     done.source = source;
     Ok(done)
+}
+
+/// The least radius of the balls whose cells meet at each vertex.
+fn radii(mesh: &TriMesh, radius: impl Fn(u32) -> f64) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; mesh.points.len()];
+    for (t, tri) in mesh.tris.iter().enumerate() {
+        let r = radius(t as u32);
+        for &v in tri {
+            let known = &mut least[v as usize];
+            *known = known.min(r);
+        }
+    }
+    least
 }
 
 /// The spacing at every vertex: that of its sample, else of the nearest along

@@ -9,12 +9,15 @@
 
 use super::mend_mesh::TriMesh;
 use super::raw::NONE;
-use crate::geom::vec3::{add, cross, dot, scale, sub};
+use crate::geom::vec3::{add, cross, dot, norm, norm_sq, scale, sub};
 use crate::geom::Point;
 use crate::mesh::clash::Clash;
 
-/// Volumes below this share of the cube about all are not trusted.
-const SPECK: f64 = 1e-13;
+/// A volume below this share of the area times the extent of everything is
+/// lost in rounding: others may well find it negative.
+const LOST: f64 = 4e-15;
+/// Below this share of area and extent the sign is checked by the shells around.
+const SPECK: f64 = 1e-9;
 
 /// The shell of each triangle, and the signed volumes.
 pub(crate) struct Shells {
@@ -52,40 +55,45 @@ impl Shells {
     }
 
     /// Six times the volume of each shell about a corner of its own, and
-    /// whether it has triangles.
-    fn volumes(&self, mesh: &TriMesh) -> (Vec<f64>, Vec<bool>) {
+    /// twice its area, or zero if it is gone.
+    fn volumes(&self, mesh: &TriMesh) -> (Vec<f64>, Vec<f64>) {
         let mut origin: Vec<Option<Point>> = vec![None; self.before.len()];
         let mut volumes = vec![0.0; self.before.len()];
+        let mut areas = vec![0.0; self.before.len()];
         for (t, &shell) in self.of.iter().enumerate() {
             if mesh.alive(t as u32) {
                 let [a, b, c] = mesh.place(t as u32);
                 let o = *origin[shell as usize].get_or_insert(a);
-                volumes[shell as usize] += dot(sub(a, o), cross(sub(b, o), sub(c, o)));
+                let normal = cross(sub(b, a), sub(c, a));
+                volumes[shell as usize] += dot(sub(a, o), normal);
+                areas[shell as usize] += norm(normal);
             }
         }
-        (volumes, origin.iter().map(Option::is_some).collect())
+        (volumes, areas)
     }
 
     /// Takes out shells that look the wrong way; returns how many samples
     /// went with them.
     pub fn take_out_reversed(&self, mesh: &mut TriMesh, clash: &Clash) -> usize {
         let mut lost = 0;
+        let extent = reach(mesh);
         loop {
-            let (now, here) = self.volumes(mesh);
+            let (now, area) = self.volumes(mesh);
             let trusted = |s: usize| {
-                now[s].abs() > SPECK && now[s] * self.before[s] > 0.0 && {
+                now[s].abs() > SPECK * extent * area[s] && now[s] * self.before[s] > 0.0 && {
                     let share = now[s] / self.before[s];
                     (0.5..2.0).contains(&share)
                 }
             };
-            if (0..now.len()).all(|s| !here[s] || trusted(s)) {
+            if (0..now.len()).all(|s| area[s] == 0.0 || trusted(s)) {
                 return lost;
             }
             let depths = clash.depths(&mesh.points, &mesh.tris, &self.of, now.len());
             let wrong: Vec<bool> = (0..now.len())
                 .map(|s| {
                     let outward = depths[s].unwrap_or(0) % 2 == 0;
-                    here[s] && (now[s] == 0.0 || (now[s] > 0.0) != outward)
+                    area[s] > 0.0
+                        && (now[s].abs() <= LOST * extent * area[s] || (now[s] > 0.0) != outward)
                 })
                 .collect();
             if !wrong.contains(&true) {
@@ -114,16 +122,21 @@ impl Shells {
 /// The vector area below which a sum of products of coordinates about the
 /// middle of the mesh can come out as zero: others compute areas so.
 pub(crate) fn least_area(mesh: &TriMesh) -> f64 {
+    let reach = reach(mesh);
+    4e-16 * reach * reach
+}
+
+/// The largest coordinate about the middle of the mesh.
+fn reach(mesh: &TriMesh) -> f64 {
     let used = || {
         let all = mesh.out.iter().enumerate();
         all.filter(|(_, &h)| h != NONE).map(|(v, _)| mesh.points[v])
     };
     let count = used().count().max(1) as f64;
     let middle = scale(used().fold([0.0; 3], add), 1.0 / count);
-    let reach = used().fold(0.0f64, |r, p| {
+    used().fold(0.0f64, |r, p| {
         sub(p, middle).iter().fold(r, |r, x| r.max(x.abs()))
-    });
-    4e-16 * reach * reach
+    })
 }
 
 /// Triangles whose vector area is not above `least`, paired with themselves.
@@ -134,8 +147,11 @@ pub(crate) fn thin(mesh: &TriMesh, least: f64) -> Vec<(u32, u32)> {
         .collect()
 }
 
-/// Whether the vector area of a triangle is not above `least`.
+/// Whether the vector area of a triangle is not above `least` though its sides
+/// would allow for more.
 pub(crate) fn is_thin(t: &[Point; 3], least: f64) -> bool {
     let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
+    let side = |a: Point, b: Point| norm_sq(sub(a, b));
     n.iter().all(|x| x.abs() <= least)
+        && side(t[0], t[1]).max(side(t[0], t[2])) > 16.0 * least
 }

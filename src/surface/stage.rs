@@ -132,6 +132,10 @@ impl Job<'_> {
                 Faces::Polygons => 0.0,
             },
             single: options.single,
+            radius: &|b| match self.balls.sites.get(b as usize) {
+                Some(site) => lattice.length_to_user(site[3].sqrt() * step),
+                None => f64::INFINITY,
+            },
             spacing: &|s| lattice.length_to_user(self.spacing[s as usize]),
         };
         let mended = mend_crust(&triangles, &how, context)?;
