@@ -66,17 +66,35 @@ fn main() {
     println!("{:?}", st.power_predicates);
     let m = &rec.crust.mesh;
     let dist = |p: [f64; 3]| match kind.as_str() {
-        "torus" => (((p[0]*p[0]+p[1]*p[1]).sqrt() - 1.0).hypot(p[2]) - 0.4).abs(),
-        "sphere" => ((p[0]*p[0]+p[1]*p[1]+p[2]*p[2]).sqrt() - 1.0).abs(),
-        _ => { let f = (p[0]/3.0).powi(2)+(p[1]/2.0).powi(2)+p[2].powi(2)-1.0; let g = 2.0*((p[0]/9.0).powi(2)+(p[1]/4.0).powi(2)+p[2].powi(2)).sqrt(); (f/g).abs() }
+        "torus" => (((p[0] * p[0] + p[1] * p[1]).sqrt() - 1.0).hypot(p[2]) - 0.4).abs(),
+        "sphere" => ((p[0] * p[0] + p[1] * p[1] + p[2] * p[2]).sqrt() - 1.0).abs(),
+        _ => {
+            let f = (p[0] / 3.0).powi(2) + (p[1] / 2.0).powi(2) + p[2].powi(2) - 1.0;
+            let g = 2.0 * ((p[0] / 9.0).powi(2) + (p[1] / 4.0).powi(2) + p[2].powi(2)).sqrt();
+            (f / g).abs()
+        }
     };
     let (mut mx, mut sum, mut area, mut vmax) = (0.0f64, 0.0, 0.0, 0.0f64);
     for f in m.faces() {
-        let c: Vec<[f64;3]> = f.iter().map(|&v| m.vertices[v as usize]).collect();
-        let g = [0,1,2].map(|k| c.iter().map(|p| p[k]).sum::<f64>() / c.len() as f64);
-        let a = powercrust::geom::vec3::norm(powercrust::geom::vec3::cross(powercrust::geom::vec3::sub(c[1],c[0]), powercrust::geom::vec3::sub(c[2],c[0])));
-        mx = mx.max(dist(g)); sum += a * dist(g); area += a;
+        let c: Vec<[f64; 3]> = f.iter().map(|&v| m.vertices[v as usize]).collect();
+        let g = [0, 1, 2].map(|k| c.iter().map(|p| p[k]).sum::<f64>() / c.len() as f64);
+        let a = powercrust::geom::vec3::norm(powercrust::geom::vec3::cross(
+            powercrust::geom::vec3::sub(c[1], c[0]),
+            powercrust::geom::vec3::sub(c[2], c[0]),
+        ));
+        mx = mx.max(dist(g));
+        sum += a * dist(g);
+        area += a;
     }
-    for v in &m.vertices { vmax = vmax.max(dist(*v)); }
-    println!("polygons/sample {:.2} faces/sample {:.2} error max {:.2e} mean {:.2e} vertex max {:.2e}", st.polygons as f64 / st.samples as f64, st.faces as f64 / st.samples as f64, mx, sum / area, vmax);
+    for v in &m.vertices {
+        vmax = vmax.max(dist(*v));
+    }
+    println!(
+        "polygons/sample {:.2} faces/sample {:.2} error max {:.2e} mean {:.2e} vertex max {:.2e}",
+        st.polygons as f64 / st.samples as f64,
+        st.faces as f64 / st.samples as f64,
+        mx,
+        sum / area,
+        vmax
+    );
 }

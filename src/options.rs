@@ -51,7 +51,7 @@ impl Default for Options {
             box_factor: 5.0,
             merge: 0.5,
             faces: Faces::Triangles,
-            flatness: 0.25,
+            flatness: 0.35,
             single: false,
         }
     }

@@ -2,9 +2,9 @@
 //! exact tests of [`super::check()`] for those who mend meshes.
 
 use super::bvh::{Bvh, Cuboid};
+use super::crossing::Field;
 use super::frame::Frame;
 use super::intersect::{contact, Contact, Twins};
-use super::crossing::Field;
 use super::nesting;
 use super::soup::{place, Triangles};
 use crate::context::{Cancelled, Context, Stage};
@@ -164,6 +164,7 @@ impl Tree {
     /// tree was made.
     pub fn near(&self, reach: &Reach, mut visit: impl FnMut(u32)) {
         let cuboid = &reach.0;
-        self.bvh.query(cuboid, |slot| visit(self.listed[slot as usize]));
+        self.bvh
+            .query(cuboid, |slot| visit(self.listed[slot as usize]));
     }
 }

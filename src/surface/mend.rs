@@ -33,10 +33,12 @@ use super::mend_coarsen::{coarsen, Coarsened};
 use super::mend_local::mend;
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
+use super::mend_place::settle;
 use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context};
-use crate::geom::Point;
+use crate::geom::vec3::{norm, scale, sub};
+use crate::geom::{Ball, Point};
 use crate::mesh::clash::Clash;
 
 /// The surface never moves by more than this share of the spacing, nor of the
@@ -54,8 +56,8 @@ pub struct MendOptions<'a> {
     pub single: bool,
     /// The spacing at each sample, in the units of the mesh.
     pub spacing: &'a (dyn Fn(u32) -> f64 + Sync),
-    /// The radius of each ball, in the units of the mesh.
-    pub radius: &'a (dyn Fn(u32) -> f64 + Sync),
+    /// Each ball, in the units of the mesh.
+    pub ball: &'a (dyn Fn(u32) -> Option<Ball> + Sync),
 }
 
 /// A mended crust of triangles and what was done.
@@ -65,6 +67,8 @@ pub struct Mending {
     pub crust: Crust,
     /// The face of the crust given that each triangle comes from.
     pub source: Vec<u32>,
+    /// Vertices that are no samples moved onto the surface.
+    pub settled: usize,
     /// Vertices drawn into neighbours to coarsen the mesh.
     pub collapsed: usize,
     /// Edges turned for better angles.
@@ -84,7 +88,11 @@ pub struct Mending {
 }
 
 /// Mends a closed manifold crust of triangles.
-pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<Mending, Cancelled> {
+pub fn mend_crust(
+    crust: &Crust,
+    options: &MendOptions,
+    cx: &Context,
+) -> Result<Mending, Cancelled> {
     let (clash, mut points) = Clash::new(&crust.mesh.vertices);
     let source = (0..crust.mesh.face_count() as u32).collect();
     let round = |p: Point| match options.single {
@@ -102,13 +110,23 @@ pub fn mend_crust(crust: &Crust, options: &MendOptions, cx: &Context) -> Result<
         let spacing = spread(&mesh, |s| length((options.spacing)(s)));
         let radii = radii(&mesh, |t| {
             let balls = crust.face_balls[t as usize].iter().filter(|&&b| b != NONE);
-            balls.map(|&b| length((options.radius)(b))).fold(f64::INFINITY, f64::min)
+            let radii = balls.filter_map(|&b| Some(length((options.ball)(b)?.radius)));
+            radii.fold(f64::INFINITY, f64::min)
         });
-        let tolerance: Vec<f64> = (spacing.iter().zip(&radii))
-            .map(|(h, r)| {
-                let error = options.flatness * h * h / (2.0 * r);
-                error.min(MOST * h).min(MOST * r).max(NOTHING * h)
-            })
+        let error = |h: f64, r: f64| (h * h / (2.0 * r)).min(MOST * h).min(MOST * r);
+        let limit: Vec<f64> = (spacing.iter().zip(&radii))
+            .map(|(&h, &r)| error(h, r))
+            .collect();
+        let outward = |t: u32| {
+            let [inner, outer] = crust.face_balls[t as usize];
+            let (i, o) = ((options.ball)(inner)?.centre, (options.ball)(outer)?.centre);
+            let d = sub(o, i);
+            let size = norm(d);
+            (size > 0.0 && size.is_finite()).then(|| scale(d, 1.0 / size))
+        };
+        done.settled = settle(&mut mesh, &outward, &limit, &round);
+        let tolerance: Vec<f64> = (limit.iter().zip(&spacing))
+            .map(|(e, h)| (options.flatness * e).max(NOTHING * h))
             .collect();
         let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
@@ -185,6 +203,9 @@ fn spread(mesh: &TriMesh, spacing: impl Fn(u32) -> f64) -> Vec<f64> {
             break;
         }
     }
-    known.iter_mut().filter(|l| !l.is_finite()).for_each(|l| *l = 0.0);
+    known
+        .iter_mut()
+        .filter(|l| !l.is_finite())
+        .for_each(|l| *l = 0.0);
     known
 }

@@ -211,7 +211,12 @@ impl Work<'_> {
     fn flip_helps(&self, h: u32) -> bool {
         let mesh = &*self.mesh;
         let t = mesh.twin(h);
-        let ids = [mesh.tail(h), mesh.head(h), mesh.tail(prev(h)), mesh.tail(prev(t))];
+        let ids = [
+            mesh.tail(h),
+            mesh.head(h),
+            mesh.tail(prev(h)),
+            mesh.tail(prev(t)),
+        ];
         let [u, v, a, b] = ids.map(|v| mesh.at(v));
         let (n1, l1) = area(&[u, v, a]);
         let (n2, l2) = area(&[v, u, b]);
@@ -226,7 +231,9 @@ impl Work<'_> {
         if after <= 1.2 * before {
             return false;
         }
-        let tolerance = ids.iter().map(|&v| self.tolerance[v as usize] - self.moved[v as usize]);
+        let tolerance = ids
+            .iter()
+            .map(|&v| self.tolerance[v as usize] - self.moved[v as usize]);
         let tolerance = tolerance.fold(f64::INFINITY, f64::min);
         // The distance between the lines of the two diagonals.
         let normal = cross(sub(v, u), sub(a, b));

@@ -144,7 +144,9 @@ impl Work<'_> {
         }
         !self.flat(s)
             && !self.flat(t)
-            && self.clash.meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
+            && self
+                .clash
+                .meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
     }
 
     /// The bad pairs of which one is among `touched` (sorted).
@@ -177,7 +179,9 @@ impl Work<'_> {
                 let place = mesh.place(t);
                 if reach.meets(&Reach::of(&place))
                     && !self.clash.is_flat(&place)
-                    && self.clash.meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
+                    && self
+                        .clash
+                        .meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
                 {
                     found.push((s.min(t), s.max(t)));
                 }
@@ -229,7 +233,8 @@ impl Work<'_> {
         if let Change::Collapse(h) = change {
             let (from, to) = (self.mesh.tail(h), self.mesh.head(h));
             let sample = self.mesh.samples[from as usize];
-            done.samples_lost += usize::from(sample != NONE && sample != self.mesh.samples[to as usize]);
+            done.samples_lost +=
+                usize::from(sample != NONE && sample != self.mesh.samples[to as usize]);
         }
         self.apply(change);
         done.changes += 1;
@@ -349,7 +354,11 @@ impl Work<'_> {
             }
         };
         let toward = sub(middle, p);
-        let steps: &[f64] = if level == 0 { &[1.0, 0.3] } else { &[1.0, 0.5, 0.2, 0.05, 0.01] };
+        let steps: &[f64] = if level == 0 {
+            &[1.0, 0.3]
+        } else {
+            &[1.0, 0.5, 0.2, 0.05, 0.01]
+        };
         for &k in steps {
             push(add(p, scale(toward, k)));
         }

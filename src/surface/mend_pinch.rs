@@ -102,7 +102,9 @@ pub(crate) fn kernel(mesh: &TriMesh, v: u32) -> (f64, Point) {
 fn shortest(mesh: &TriMesh, v: u32) -> f64 {
     let mut fan = Vec::new();
     mesh.fan(v, &mut fan);
-    let lengths = fan.iter().map(|&h| dist_sq(mesh.at(v), mesh.at(mesh.head(h))));
+    let lengths = fan
+        .iter()
+        .map(|&h| dist_sq(mesh.at(v), mesh.at(mesh.head(h))));
     let least = lengths.filter(|&l| l > 0.0).fold(f64::INFINITY, f64::min);
     if least.is_finite() {
         least.sqrt()

@@ -6,7 +6,7 @@ use super::{clean, raw_crust, triangulate_from, CleanOptions, Crust, Placement, 
 use crate::context::{Context, Stage};
 use crate::delaunay::Samples;
 use crate::error::Error;
-use crate::geom::{Point, Side};
+use crate::geom::{Ball, Point, Side};
 use crate::mesh::{check, CheckOptions, Finding, PolygonMesh};
 use crate::options::{Faces, Options};
 use crate::poles::Balls;
@@ -132,9 +132,13 @@ impl Job<'_> {
                 Faces::Polygons => 0.0,
             },
             single: options.single,
-            radius: &|b| match self.balls.sites.get(b as usize) {
-                Some(site) => lattice.length_to_user(site[3].sqrt() * step),
-                None => f64::INFINITY,
+            ball: &|b| {
+                let site = self.balls.sites.get(b as usize)?;
+                let centre = [site[0] * step, site[1] * step, site[2] * step];
+                Some(Ball::new(
+                    lattice.to_user(centre),
+                    lattice.length_to_user(site[3].sqrt() * step),
+                ))
             },
             spacing: &|s| lattice.length_to_user(self.spacing[s as usize]),
         };
