@@ -33,21 +33,31 @@ use super::mend_coarsen::{coarsen, Coarsened};
 use super::mend_local::mend;
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
+use super::mend_place::settle;
 use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context};
-use crate::geom::Point;
+use crate::geom::vec3::{norm, scale, sub};
+use crate::geom::{Ball, Point};
 use crate::mesh::clash::Clash;
+
+/// The surface never moves by more than this share of the spacing, nor of the
+/// radius of the balls beside it.
+const MOST: f64 = 0.05;
+/// Moves by this share of the spacing are none.
+const NOTHING: f64 = 1e-6;
 
 /// How to mend.
 pub struct MendOptions<'a> {
-    /// How far the surface may move to lose a vertex that is no sample, in
-    /// lengths of the local spacing; 0 leaves all that do no harm.
+    /// How far the surface may move to lose a vertex that is no sample, as a
+    /// share of the sampling error `h² / 2r`; 0 leaves all that do no harm.
     pub flatness: f64,
     /// New positions are rounded to single precision, as those given are.
     pub single: bool,
     /// The spacing at each sample, in the units of the mesh.
     pub spacing: &'a (dyn Fn(u32) -> f64 + Sync),
+    /// Each ball, in the units of the mesh.
+    pub ball: &'a (dyn Fn(u32) -> Option<Ball> + Sync),
 }
 
 /// A mended crust of triangles and what was done.
@@ -57,6 +67,8 @@ pub struct Mending {
     pub crust: Crust,
     /// The face of the crust given that each triangle comes from.
     pub source: Vec<u32>,
+    /// Vertices that are no samples moved onto the surface.
+    pub settled: usize,
     /// Vertices drawn into neighbours to coarsen the mesh.
     pub collapsed: usize,
     /// Edges turned for better angles.
@@ -95,8 +107,27 @@ pub fn mend_crust(
     let mut done = Mending::default();
     if options.flatness > 0.0 {
         let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
-        let mut tolerance = spread(&mesh, |s| length((options.spacing)(s)));
-        tolerance.iter_mut().for_each(|t| *t *= options.flatness);
+        let spacing = spread(&mesh, |s| length((options.spacing)(s)));
+        let radii = radii(&mesh, |t| {
+            let balls = crust.face_balls[t as usize].iter().filter(|&&b| b != NONE);
+            let radii = balls.filter_map(|&b| Some(length((options.ball)(b)?.radius)));
+            radii.fold(f64::INFINITY, f64::min)
+        });
+        let error = |h: f64, r: f64| (h * h / (2.0 * r)).min(MOST * h).min(MOST * r);
+        let limit: Vec<f64> = (spacing.iter().zip(&radii))
+            .map(|(&h, &r)| error(h, r))
+            .collect();
+        let outward = |t: u32| {
+            let [inner, outer] = crust.face_balls[t as usize];
+            let (i, o) = ((options.ball)(inner)?.centre, (options.ball)(outer)?.centre);
+            let d = sub(o, i);
+            let size = norm(d);
+            (size > 0.0 && size.is_finite()).then(|| scale(d, 1.0 / size))
+        };
+        done.settled = settle(&mut mesh, &outward, &limit, &round);
+        let tolerance: Vec<f64> = (limit.iter().zip(&spacing))
+            .map(|(e, h)| (options.flatness * e).max(NOTHING * h))
+            .collect();
         let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
     }
@@ -132,6 +163,19 @@ pub fn mend_crust(
     done.crust = mended;
     done.source = source;
     Ok(done)
+}
+
+/// The least radius of the balls whose cells meet at each vertex.
+fn radii(mesh: &TriMesh, radius: impl Fn(u32) -> f64) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; mesh.points.len()];
+    for (t, tri) in mesh.tris.iter().enumerate() {
+        let r = radius(t as u32);
+        for &v in tri {
+            let known = &mut least[v as usize];
+            *known = known.min(r);
+        }
+    }
+    least
 }
 
 /// The spacing at every vertex: that of its sample, else of the nearest along

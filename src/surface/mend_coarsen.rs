@@ -185,7 +185,26 @@ impl Work<'_> {
                 &[to, self.places[k], self.places[k + 1]],
             ));
         }
-        (distance_sq <= limit * limit).then_some((quality, distance_sq))
+        if distance_sq > limit * limit {
+            return None;
+        }
+        // Nor may the new edges leave the old triangles.
+        for k in (j + 2..j + n - 1).map(|k| k % n) {
+            let middle = scale(add(to, self.places[k]), 0.5);
+            let mut off = f64::INFINITY;
+            for i in 0..n {
+                let t = [p, self.places[i], self.places[i + 1]];
+                off = off.min(point_triangle_sq(middle, &t));
+                if off <= distance_sq {
+                    break;
+                }
+            }
+            if off > limit * limit {
+                return None;
+            }
+            distance_sq = distance_sq.max(off);
+        }
+        Some((quality, distance_sq))
     }
 
     /// Turns edges that make better triangles; returns how many.

@@ -1,31 +1,31 @@
 //! Shells that came out inside out, and triangles too thin to be told.
 //!
-//! A shell is a component of the surface. None of the changes of mending join
-//! or part shells, so each can be compared with itself before: where the
-//! volume is of the same sign and size and not within rounding of nothing, it
-//! looks the right way. Any other is judged by the shells around it. One that
-//! looks the wrong way has folded over, which happens to specks of hardly any
-//! volume only, and is taken out.
+//! A shell is a component of the surface; no change of mending joins or parts
+//! shells. Rounding can turn one over that is hardly thicker than it, and a
+//! surface that moves a little can jump over one. So each is judged by the
+//! shells around it: one that looks the wrong way, or whose volume is lost in
+//! rounding, is a speck and is taken out.
 
+use super::mend_coarsen::area;
 use super::mend_mesh::TriMesh;
 use super::raw::NONE;
-use crate::geom::vec3::{add, cross, dot, scale, sub};
+use crate::geom::vec3::{add, cross, dot, norm_sq, scale, sub};
 use crate::geom::Point;
 use crate::mesh::clash::Clash;
 
-/// Volumes below this share of the cube about all are not trusted.
-const SPECK: f64 = 1e-13;
-
-/// The shell of each triangle, and the signed volumes.
+/// A volume below this share of the squared sides times the extent of
+/// everything is lost in rounding: others may well find it negative.
+const LOST: f64 = 1e-15;
+/// The shell of each triangle.
 pub(crate) struct Shells {
-    pub of: Vec<u32>,
-    before: Vec<f64>,
+    of: Vec<u32>,
+    count: usize,
 }
 
 impl Shells {
     pub fn of(mesh: &TriMesh) -> Shells {
         let mut of = vec![NONE; mesh.tris.len()];
-        let mut count = 0;
+        let mut count = 0u32;
         let mut open = Vec::new();
         for first in 0..of.len() {
             if of[first] != NONE {
@@ -43,60 +43,57 @@ impl Shells {
             }
             count += 1;
         }
-        let mut shells = Shells {
+        Shells {
             of,
-            before: vec![0.0; count as usize],
-        };
-        shells.before = shells.volumes(mesh).0;
-        shells
+            count: count as usize,
+        }
     }
 
-    /// Six times the volume of each shell about a corner of its own, and
-    /// whether it has triangles.
-    fn volumes(&self, mesh: &TriMesh) -> (Vec<f64>, Vec<bool>) {
-        let mut origin: Vec<Option<Point>> = vec![None; self.before.len()];
-        let mut volumes = vec![0.0; self.before.len()];
+    /// Six times the volume of each shell about a corner of its own, and the
+    /// sum of its squared sides, zero if it is gone.
+    fn volumes(&self, mesh: &TriMesh) -> (Vec<f64>, Vec<f64>) {
+        let mut origin: Vec<Option<Point>> = vec![None; self.count];
+        let mut volumes = vec![0.0; self.count];
+        let mut sides = vec![0.0; self.count];
         for (t, &shell) in self.of.iter().enumerate() {
             if mesh.alive(t as u32) {
                 let [a, b, c] = mesh.place(t as u32);
                 let o = *origin[shell as usize].get_or_insert(a);
-                volumes[shell as usize] += dot(sub(a, o), cross(sub(b, o), sub(c, o)));
+                let normal = cross(sub(b, a), sub(c, a));
+                volumes[shell as usize] += dot(sub(a, o), normal);
+                sides[shell as usize] += area(&[a, b, c]).1;
             }
         }
-        (volumes, origin.iter().map(Option::is_some).collect())
+        (volumes, sides)
     }
 
     /// Takes out shells that look the wrong way; returns how many samples
     /// went with them.
     pub fn take_out_reversed(&self, mesh: &mut TriMesh, clash: &Clash) -> usize {
         let mut lost = 0;
+        let extent = reach(mesh);
         loop {
-            let (now, here) = self.volumes(mesh);
-            let trusted = |s: usize| {
-                now[s].abs() > SPECK && now[s] * self.before[s] > 0.0 && {
-                    let share = now[s] / self.before[s];
-                    (0.5..2.0).contains(&share)
-                }
+            let (now, sides) = self.volumes(mesh);
+            let depths = match sides.iter().filter(|&&a| a > 0.0).count() {
+                0 | 1 => vec![Some(0); now.len()],
+                _ => clash.depths(&mesh.points, &mesh.tris, &self.of, now.len()),
             };
-            if (0..now.len()).all(|s| !here[s] || trusted(s)) {
-                return lost;
-            }
-            let depths = clash.depths(&mesh.points, &mesh.tris, &self.of, now.len());
             let wrong: Vec<bool> = (0..now.len())
                 .map(|s| {
                     let outward = depths[s].unwrap_or(0) % 2 == 0;
-                    here[s] && (now[s] == 0.0 || (now[s] > 0.0) != outward)
+                    sides[s] > 0.0
+                        && (now[s].abs() <= LOST * extent * sides[s] || (now[s] > 0.0) != outward)
                 })
                 .collect();
             if !wrong.contains(&true) {
                 return lost;
             }
             // What lies within a shell that goes is judged without it.
-            let least = depths.iter().zip(&wrong).filter(|(_, &w)| w);
-            let least = least.map(|(d, _)| d.unwrap_or(0)).min().unwrap_or(0);
+            let depth = |s: usize| depths[s].unwrap_or(0);
+            let least = (0..now.len()).filter(|&s| wrong[s]).map(depth).min();
             for t in 0..mesh.tris.len() as u32 {
                 let shell = self.of[t as usize] as usize;
-                if mesh.alive(t) && wrong[shell] && depths[shell].unwrap_or(0) == least {
+                if mesh.alive(t) && wrong[shell] && Some(depth(shell)) == least {
                     for h in 3 * t..3 * t + 3 {
                         let v = mesh.tail(h) as usize;
                         if mesh.out[v] != NONE && mesh.samples[v] != NONE {
@@ -114,16 +111,21 @@ impl Shells {
 /// The vector area below which a sum of products of coordinates about the
 /// middle of the mesh can come out as zero: others compute areas so.
 pub(crate) fn least_area(mesh: &TriMesh) -> f64 {
+    let reach = reach(mesh);
+    4e-16 * reach * reach
+}
+
+/// The largest coordinate about the middle of the mesh.
+fn reach(mesh: &TriMesh) -> f64 {
     let used = || {
         let all = mesh.out.iter().enumerate();
         all.filter(|(_, &h)| h != NONE).map(|(v, _)| mesh.points[v])
     };
     let count = used().count().max(1) as f64;
     let middle = scale(used().fold([0.0; 3], add), 1.0 / count);
-    let reach = used().fold(0.0f64, |r, p| {
+    used().fold(0.0f64, |r, p| {
         sub(p, middle).iter().fold(r, |r, x| r.max(x.abs()))
-    });
-    4e-16 * reach * reach
+    })
 }
 
 /// Triangles whose vector area is not above `least`, paired with themselves.
@@ -134,8 +136,10 @@ pub(crate) fn thin(mesh: &TriMesh, least: f64) -> Vec<(u32, u32)> {
         .collect()
 }
 
-/// Whether the vector area of a triangle is not above `least`.
+/// Whether the vector area of a triangle is not above `least` though its sides
+/// would allow for more.
 pub(crate) fn is_thin(t: &[Point; 3], least: f64) -> bool {
     let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
-    n.iter().all(|x| x.abs() <= least)
+    let side = |a: Point, b: Point| norm_sq(sub(a, b));
+    n.iter().all(|x| x.abs() <= least) && side(t[0], t[1]).max(side(t[0], t[2])) > 16.0 * least
 }

@@ -1,0 +1,100 @@
+//! Power vertices go where the surface is.
+//!
+//! A vertex that is no sample lies off the surface by about the sampling
+//! error `h² / 2r`, for it is made by balls that fit the surface at samples
+//! only. The samples know more: each has the direction from the inner to the
+//! outer balls at it for a normal. Between a sample `s` and a point `x` of a
+//! surface with normals `m` and `n`, `(x - s) · (m + n) / 2` vanishes but for
+//! the third order (the trapezoid rule; on circles it is exact), so the mean
+//! of it over the samples around says how far off the vertex lies. It moves
+//! back along the normal, by at most the sampling error, and only where all
+//! normals around agree: at edges of the solid the power vertices are what
+//! extends the faces to the edge, and they stay.
+
+use super::mend_mesh::TriMesh;
+use super::raw::NONE;
+use crate::geom::vec3::{add, dist_sq, dot, norm, scale, sub};
+use crate::geom::Point;
+
+/// The least cosine between normals that agree.
+const AGREE: f64 = 0.9;
+
+/// Moves vertices that are no samples by at most `limit`; `outward` tells the
+/// direction across each triangle. Returns how many moved.
+pub(crate) fn settle(
+    mesh: &mut TriMesh,
+    outward: &dyn Fn(u32) -> Option<Point>,
+    limit: &[f64],
+    round: &dyn Fn(Point) -> Point,
+) -> usize {
+    let across: Vec<Option<Point>> = (0..mesh.tris.len() as u32).map(outward).collect();
+    let mut sums = vec![[0.0; 3]; mesh.points.len()];
+    for (tri, n) in mesh.tris.iter().zip(&across) {
+        for &v in tri {
+            let sum = &mut sums[v as usize];
+            *sum = add(*sum, n.unwrap_or([0.0; 3]));
+        }
+    }
+    let normals: Vec<Point> = sums.iter().map(|&s| unit(s)).collect();
+    let mut smooth = vec![true; normals.len()];
+    for (tri, n) in mesh.tris.iter().zip(&across) {
+        for &v in tri {
+            let agrees = n.is_some_and(|n| dot(n, normals[v as usize]) >= AGREE);
+            smooth[v as usize] &= agrees;
+        }
+    }
+    let (mut fan, mut near, mut moves) = (Vec::new(), Vec::new(), Vec::new());
+    for v in 0..mesh.points.len() as u32 {
+        if mesh.samples[v as usize] != NONE || !smooth[v as usize] {
+            continue;
+        }
+        near.clear();
+        mesh.fan(v, &mut fan);
+        near.extend(fan.iter().map(|&h| mesh.head(h)));
+        for k in 0..near.len() {
+            if mesh.samples[near[k] as usize] == NONE {
+                mesh.fan(near[k], &mut fan);
+                near.extend(fan.iter().map(|&h| mesh.head(h)));
+            }
+        }
+        near.sort_unstable();
+        near.dedup();
+        let all = near
+            .iter()
+            .all(|&w| smooth[w as usize] && dot(normals[w as usize], normals[v as usize]) >= AGREE);
+        near.retain(|&w| mesh.samples[w as usize] != NONE);
+        if !all || near.len() < 3 {
+            continue;
+        }
+        let p = mesh.at(v);
+        let weight = |w: u32| 1.0 / dist_sq(p, mesh.at(w)).max(f64::MIN_POSITIVE);
+        let mut normal = [0.0; 3];
+        for &w in &near {
+            normal = add(normal, scale(normals[w as usize], weight(w)));
+        }
+        let normal = unit(normal);
+        let (mut off, mut weights) = (0.0, 0.0);
+        for &w in &near {
+            let both = add(normal, normals[w as usize]);
+            off += weight(w) * dot(sub(p, mesh.at(w)), both) / 2.0;
+            weights += weight(w);
+        }
+        off /= weights;
+        if off.abs() <= limit[v as usize] {
+            moves.push((v, round(sub(p, scale(normal, off)))));
+        }
+    }
+    for &(v, p) in &moves {
+        mesh.shift(v, p);
+    }
+    moves.len()
+}
+
+fn unit(v: Point) -> Point {
+    let size = norm(v);
+    if size > 0.0 {
+        scale(v, 1.0 / size)
+    } else {
+        v
+    }
+}
