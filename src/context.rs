@@ -24,6 +24,8 @@ pub enum Stage {
     Crust,
     /// Judging a mesh.
     Check,
+    /// Reducing the number of triangles.
+    Reduce,
 }
 
 impl Stage {
@@ -37,6 +39,7 @@ impl Stage {
             Stage::Labels => "labels",
             Stage::Crust => "crust",
             Stage::Check => "check",
+            Stage::Reduce => "reduce",
         }
     }
 }

@@ -6,9 +6,11 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat};
+use powercrust::surface::{Keep, MinVolume};
 use powercrust::Options;
 
 use super::formats::dotted;
+use super::wanted::{self, Wanted};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -97,6 +99,7 @@ pub enum Command {
 
 const FILES: &str = "Input and output";
 const METHOD: &str = "Reconstruction";
+const SURFACE: &str = "Surface";
 const EXTRA: &str = "More results";
 const REPORTING: &str = "Running and reporting";
 
@@ -128,7 +131,9 @@ pub struct Reconstruct {
     #[arg(long, help_heading = FILES)]
     pub ascii: bool,
 
-    /// Write PLY coordinates with 32 bits instead of 64.
+    /// Round coordinates to 32 bits, and make sure of the surface on those.
+    ///
+    /// PLY then has 32-bit coordinates; STL and GLB always do.
     #[arg(long, help_heading = FILES)]
     pub f32: bool,
 
@@ -173,6 +178,47 @@ pub struct Reconstruct {
     /// Write the polygons of the power diagram instead of triangles.
     #[arg(long, overrides_with = "triangulate", help_heading = METHOD)]
     pub polygons: bool,
+
+    /// Keep the largest parts only: `largest`, a number of parts, or `all`.
+    ///
+    /// The size of a part is the volume its outer shell encloses; cavities go
+    /// with the part they are in.
+    #[arg(long, value_name = "WHICH", value_parser = wanted::keep, help_heading = SURFACE)]
+    pub keep: Option<Keep>,
+
+    /// Drop parts and fill cavities smaller than this: a volume in the cube of
+    /// the input's unit, or a share of the total such as 1%.
+    #[arg(long, value_name = "V", value_parser = wanted::min_volume, help_heading = SURFACE)]
+    pub min_volume: Option<MinVolume>,
+
+    /// Fill all cavities, with what lies in them.
+    #[arg(long, help_heading = SURFACE)]
+    pub drop_cavities: bool,
+
+    /// Reduce the mesh to so many triangles.
+    ///
+    /// Vertices that stay are where they were; those whose loss moves the
+    /// surface least go first. The mesh stays closed, manifold and free of
+    /// crossings; where that allows no further step, the run ends with more
+    /// triangles than asked for and says so.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..), conflicts_with_all = ["polygons", "reduce"], help_heading = SURFACE)]
+    pub faces: Option<u32>,
+
+    /// Reduce the mesh to one R-th of its triangles, R > 1: see --faces.
+    #[arg(long, value_name = "R", value_parser = wanted::reduce, conflicts_with = "polygons", help_heading = SURFACE)]
+    pub reduce: Option<f64>,
+
+    /// Values to write with the mesh: `all`, `none`, or names between commas.
+    ///
+    /// Names: sample (the input point at each vertex, -1 for none), normals,
+    /// colours, columns of the input; and of faces thickness, gap (how thick
+    /// the solid and the space before it are), component (0 the largest
+    /// part), hole (1 where nothing was sampled). By default sample and what
+    /// the input has. Vertices that are no input points are blended from
+    /// those next to them. PLY and JSON hold all of it, OBJ, OFF and GLB
+    /// normals and colours, STL nothing.
+    #[arg(long, value_name = "LIST", value_parser = Wanted::parse, help_heading = SURFACE)]
+    pub attributes: Option<Wanted>,
 
     /// Write the inner medial axis.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]

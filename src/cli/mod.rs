@@ -10,10 +10,12 @@ mod formats;
 mod generate;
 mod output;
 mod plan;
+mod product;
 mod report;
 mod run;
 mod show;
 mod stop;
+mod wanted;
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::process::ExitCode;

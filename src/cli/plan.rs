@@ -7,6 +7,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat, ReadOptions, WriteOptions};
+use powercrust::surface::ShellFilter;
 use powercrust::{Error, Faces, Options};
 
 use super::args::Reconstruct;
@@ -14,6 +15,7 @@ use super::fail::{name, reason, Failure};
 use super::formats::{axis_format, extension, input_format, mesh_format, poles_format};
 use super::output::Target;
 use super::show::Talk;
+use super::wanted::{Fewer, Wanted};
 
 /// The skinniness bound `--sharp` takes when none is given: near it the error
 /// at edges is least (a cube of 10,000 random samples: 0.0005 with 0.4, 0.015
@@ -29,6 +31,12 @@ pub struct Plan {
     pub read: ReadOptions,
     pub options: Options,
     pub threads: Option<NonZeroUsize>,
+    /// Which parts to keep.
+    pub shells: ShellFilter,
+    /// How many triangles to reduce to.
+    pub fewer: Option<Fewer>,
+    /// Which values the mesh carries.
+    pub attributes: Wanted,
     pub write: WriteOptions,
     pub mesh: Option<Out<MeshFormat>>,
     pub inner_axis: Option<Out<AxisFormat>>,
@@ -95,6 +103,13 @@ impl Plan {
             input_format,
             options,
             threads: args.threads,
+            shells: ShellFilter {
+                keep: args.keep.unwrap_or_default(),
+                min_volume: args.min_volume,
+                drop_cavities: args.drop_cavities,
+            },
+            fewer: (args.faces.map(|n| Fewer::Faces(n as usize))).or(args.reduce.map(Fewer::OneIn)),
+            attributes: args.attributes.clone().unwrap_or_default(),
             json: args.json,
             check: args.check,
             talk: Talk::new(args.quiet, args.verbose),
@@ -126,8 +141,11 @@ impl Plan {
     fn check_places(&self) -> Result<(), Failure> {
         let outs = self.outs();
         if let Some(out) = &self.mesh {
-            let binary =
-                matches!(out.format, MeshFormat::Ply | MeshFormat::Stl) && !self.write.ascii;
+            let binary = match out.format {
+                MeshFormat::Ply | MeshFormat::Stl => !self.write.ascii,
+                MeshFormat::Glb => true,
+                _ => false,
+            };
             if binary && out.target == Target::Stdout && std::io::stdout().is_terminal() {
                 return Err(Failure::usage("a binary mesh would go to the terminal")
                     .hint("redirect it, or add --ascii or --output-format obj"));
@@ -184,9 +202,24 @@ impl Plan {
                 Some(MeshFormat::Obj | MeshFormat::Off | MeshFormat::Json)
             )
             || any_axis(&[AxisFormat::Ma, AxisFormat::Obj, AxisFormat::Json]);
+        let single = ply || matches!(mesh, Some(MeshFormat::Stl | MeshFormat::Glb));
+        if let Some(format) = mesh {
+            if let Some(name) = self.attributes.beyond(format) {
+                return Err(Failure::usage(format!(
+                    "--attributes {name} would have no effect: {} files cannot hold it",
+                    format.name()
+                ))
+                .hint("write PLY, or leave it out"));
+            }
+        }
         let idle = [
+            (
+                args.attributes.is_some() && mesh.is_none(),
+                "--attributes",
+                "the mesh, which needs -o",
+            ),
             (args.ascii && !ply && !stl, "--ascii", "PLY and STL files"),
-            (args.f32 && !ply, "--f32", "PLY files"),
+            (args.f32 && !single, "--f32", "PLY, STL and GLB files"),
             (
                 args.precision.is_some() && !text,
                 "--precision",

@@ -4,17 +4,22 @@ use std::time::Instant;
 
 use powercrust::io::ReadReport;
 use powercrust::mesh::{check, CheckOptions, Report as Findings};
+use powercrust::surface::ShellFilter;
 use powercrust::{Cancelled, Context, Faces, PowerShape, Reconstruction, Side};
 use serde_json::{json, Value};
 
 use super::fail::name;
 use super::output::Target;
 use super::plan::Plan;
+use super::product::{Product, Reduced};
 use super::show::{counted, grouped, Talk};
 
 /// What the run found, for the summary, `--json` and `--stats`.
 pub struct Report {
     findings: Findings,
+    reduced: Option<Reduced>,
+    parts: usize,
+    cavities: usize,
     samples: usize,
     stages: Vec<(String, f64)>,
     pub inner_axis: Option<PowerShape>,
@@ -30,6 +35,7 @@ impl Report {
     pub fn new(
         plan: &Plan,
         result: &Reconstruction,
+        product: &Product,
         input: ReadReport,
         context: &Context,
     ) -> Result<Report, Cancelled> {
@@ -53,9 +59,11 @@ impl Report {
                 "faces": findings.faces,
                 "closed": findings.is_closed(),
                 "manifold": findings.counts.non_manifold_edge + findings.counts.pinched_vertex == 0,
-                "components": findings.components,
+                "components": product.shells.part_volumes.len(),
+                "shells": findings.shells.len(),
                 "genus": findings.genus,
-                "cavities": findings.cavities,
+                "cavities": product.shells.cavities.len(),
+                "largest_volumes": &product.shells.part_volumes[..product.shells.part_volumes.len().min(20)],
                 "volume": findings.volume,
                 "area": findings.area,
             },
@@ -64,6 +72,16 @@ impl Report {
             head["mesh"]["sound"] = json!(findings.is_watertight());
             head["mesh"]["crossing"] = json!(findings.counts.crossing);
             head["mesh"]["touching"] = json!(findings.counts.touching);
+        }
+        let (kept, all) = (&product.shells, &product.before);
+        if plan.shells != ShellFilter::default() {
+            head["dropped"] = json!({
+                "components": all.part_volumes.len() - kept.part_volumes.len(),
+                "cavities": all.cavities.len() - kept.cavities.len(),
+            });
+        }
+        if let Some(reduced) = &product.reduced {
+            head["reduced"] = json!(reduced);
         }
         let mut stats = head.clone();
         stats["stats"] = json!(result.stats);
@@ -84,6 +102,9 @@ impl Report {
         }
         Ok(Report {
             findings,
+            reduced: product.reduced,
+            parts: kept.part_volumes.len(),
+            cavities: kept.cavities.len(),
             samples: result.stats.samples,
             stages: result.stats.seconds.clone(),
             inner_axis,
@@ -123,10 +144,20 @@ impl Report {
         let mut parts = vec![
             format!("{} samples", grouped(self.samples)),
             counted(found.faces as usize, one, many),
-            counted(found.components as usize, "component", "components"),
+            counted(self.parts, "component", "components"),
         ];
+        if self.cavities > 0 {
+            parts.push(counted(self.cavities, "cavity", "cavities"));
+        }
         if let Some(genus) = found.genus {
             parts.push(format!("genus {genus}"));
+        }
+        if let Some(reduced) = &self.reduced {
+            let moved = 100.0 * reduced.moved.mean_of_diagonal;
+            parts.push(format!("moved by {moved:.2e} % of the diagonal"));
+            if reduced.faces > reduced.asked + 1 {
+                parts.push(format!("not fewer ({} asked for)", grouped(reduced.asked)));
+            }
         }
         if !found.is_closed() {
             parts.push("not closed (a bug: please report it)".to_owned());

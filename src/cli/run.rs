@@ -6,15 +6,15 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use powercrust::io::{self as format, CloudFormat, MeshAttributes, ReadError, WriteError};
-use powercrust::surface::NONE;
-use powercrust::{Context, Error, Reconstruction, SampleError};
+use powercrust::io::{self as format, CloudFormat, MeshFormat, ReadError, WriteError};
+use powercrust::{Bounds, Context, Error, Options, Point, Reconstruction, SampleError};
 use serde_json::json;
 
 use super::fail::{name, reason, Code, Failure};
 use super::formats::dotted;
 use super::output::{Staged, Target};
 use super::plan::{out_of_range, Plan};
+use super::product::{self, Product};
 use super::report::Report;
 use super::show::{counted, Bar, Talk};
 use super::stop;
@@ -53,13 +53,21 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         threads: plan.threads,
         progress: &bar,
     };
-    let outcome =
-        powercrust::reconstruct(&cloud.points, &plan.options, &context).and_then(|result| {
-            let report = Report::new(plan, &result, cloud.report, &context)?;
-            Ok((result, report))
+    let options = Options {
+        single: plan.options.single || holds_single(plan, &cloud.points),
+        ..plan.options.clone()
+    };
+    let outcome = powercrust::reconstruct(&cloud.points, &options, &context);
+    let outcome = outcome
+        .map_err(|error| unsolved(plan, error))
+        .and_then(|mut result| {
+            let product = product::make(plan, &cloud, &mut result, &context)?;
+            let report = Report::new(plan, &result, &product, cloud.report, &context)
+                .map_err(|_| Failure::interrupted())?;
+            Ok((result, product, report))
         });
     bar.clear();
-    let (result, report) = outcome.map_err(|error| unsolved(plan, error))?;
+    let (result, product, report) = outcome?;
     if result.stats.duplicates > 0 {
         plan.talk.at(
             Talk::Plain,
@@ -74,9 +82,24 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         );
     }
 
-    write_results(plan, &result, &report)?;
+    write_results(plan, &result, &product, &report)?;
     report.tell(plan, start);
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether the mesh file holds 32-bit coordinates, so that the surface must
+/// be made sure of on those. GLB counts them from the middle of the mesh; for
+/// points that lie far from the origin, rounding them as they are would lose
+/// detail that the file can hold.
+fn holds_single(plan: &Plan, points: &[Point]) -> bool {
+    match plan.mesh.as_ref().map(|out| out.format) {
+        Some(MeshFormat::Stl) => true,
+        Some(MeshFormat::Glb) => Bounds::of(points).is_some_and(|b| {
+            let far = |k: usize| b.min[k].abs().max(b.max[k].abs());
+            far(0).max(far(1)).max(far(2)) < 8.0 * b.diagonal()
+        }),
+        _ => false,
+    }
 }
 
 /// The whole input.
@@ -175,30 +198,18 @@ fn unsolved(plan: &Plan, error: Error) -> Failure {
 }
 
 /// Stages every file and then makes all of them visible.
-fn write_results(plan: &Plan, result: &Reconstruction, report: &Report) -> Result<(), Failure> {
+fn write_results(
+    plan: &Plan,
+    result: &Reconstruction,
+    product: &Product,
+    report: &Report,
+) -> Result<(), Failure> {
     let mut staged: Vec<Staged> = Vec::new();
     if let Some(out) = &plan.mesh {
-        let samples: Vec<u32> = result
-            .crust
-            .vertex_samples
-            .iter()
-            .map(|&sample| match sample {
-                NONE => NONE,
-                sample => result.sample_source[sample as usize],
-            })
-            .collect();
-        let attributes = MeshAttributes {
-            samples: Some(&samples),
-            ..MeshAttributes::default()
-        };
+        let attributes = product.carried.attributes();
+        let mesh = &result.crust.mesh;
         staged.push(stage(&out.target, &out.path, |mut w| {
-            format::write_mesh(
-                &mut w,
-                out.format,
-                &result.crust.mesh,
-                &attributes,
-                &plan.write,
-            )
+            format::write_mesh(&mut w, out.format, mesh, &attributes, &plan.write)
         })?);
     }
     let axes = [

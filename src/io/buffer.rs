@@ -48,11 +48,7 @@ impl<'w, W: Write> Buffer<'w, W> {
     /// A number with as few digits as will read back the same (or with the
     /// digits asked for).
     pub fn number(&mut self, value: f64) {
-        let mut value = value;
-        if let Some(digits) = self.digits.filter(|_| value.is_finite()) {
-            let decimals = usize::from(digits.clamp(1, 17)) - 1;
-            value = format!("{value:.decimals$e}").parse().unwrap_or(value);
-        }
+        let value = with_digits(value, self.digits);
         let size = value.abs();
         // Writing to a Vec cannot fail.
         let _ = if size != 0.0 && !(1e-5..1e16).contains(&size) && size.is_finite() {
@@ -100,6 +96,17 @@ impl<'w, W: Write> Buffer<'w, W> {
         self.number(p[1]);
         self.bytes.push(b' ');
         self.number(p[2]);
+    }
+}
+
+/// The nearest number of so many significant digits.
+pub fn with_digits(value: f64, digits: Option<u8>) -> f64 {
+    match digits.filter(|_| value.is_finite()) {
+        None => value,
+        Some(digits) => {
+            let decimals = usize::from(digits.clamp(1, 17)) - 1;
+            format!("{value:.decimals$e}").parse().unwrap_or(value)
+        }
     }
 }
 

@@ -121,6 +121,9 @@ pub enum MeshFormat {
     Stl,
     /// One JSON object: `vertices`, `faces` and the attributes by name.
     Json,
+    /// glTF 2.0 in one binary file: triangles in 32-bit floats about their
+    /// middle, normals and colours. Written, not read.
+    Glb,
 }
 
 const MESH: &[(&str, MeshFormat)] = &[
@@ -129,6 +132,7 @@ const MESH: &[(&str, MeshFormat)] = &[
     ("off", MeshFormat::Off),
     ("stl", MeshFormat::Stl),
     ("json", MeshFormat::Json),
+    ("glb", MeshFormat::Glb),
 ];
 
 impl MeshFormat {
@@ -145,6 +149,9 @@ impl MeshFormat {
     /// The mesh format a file without a name most likely has; `None` when it
     /// looks like bare points.
     pub fn sniff(bytes: &[u8]) -> Option<MeshFormat> {
+        if bytes.starts_with(b"glTF") {
+            return Some(MeshFormat::Glb);
+        }
         if scan::without_bom(bytes)
             .trim_ascii_start()
             .starts_with(b"{")
@@ -168,6 +175,7 @@ impl MeshFormat {
             MeshFormat::Off => "OFF",
             MeshFormat::Stl => "STL",
             MeshFormat::Json => "JSON",
+            MeshFormat::Glb => "GLB",
         }
     }
 }

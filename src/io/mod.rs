@@ -21,6 +21,7 @@ mod cloud;
 mod columns;
 mod error;
 mod format;
+mod glb;
 mod json;
 mod npy;
 mod obj;
@@ -38,6 +39,7 @@ pub use cloud::{Cloud, ReadOptions, ReadReport, ScalarColumn};
 pub use error::{Place, ReadError, WriteError};
 pub use format::{AxisFormat, CloudFormat, MeshFormat};
 
+use crate::geom::Point;
 use crate::mesh::PolygonMesh;
 use crate::pipeline::PolarBall;
 use crate::surface::PowerShape;
@@ -80,6 +82,10 @@ pub fn read_mesh(bytes: &[u8], format: MeshFormat) -> Result<PolygonMesh, ReadEr
         MeshFormat::Off => off::read_mesh(bytes),
         MeshFormat::Stl => stl::read_mesh(bytes),
         MeshFormat::Json => json::read_mesh(bytes),
+        MeshFormat::Glb => Err(ReadError::Unsupported {
+            what: "GLB".into(),
+            remedy: "it is only written; convert the file to PLY, OBJ or STL first",
+        }),
     }
 }
 
@@ -104,6 +110,26 @@ pub fn write_mesh<W: Write>(
         MeshFormat::Off => off::write_mesh(writer, mesh, attributes, options),
         MeshFormat::Stl => stl::write_mesh(writer, mesh, options),
         MeshFormat::Json => json::write_mesh(writer, mesh, attributes, options),
+        MeshFormat::Glb => glb::write_mesh(writer, mesh, attributes, options),
+    }
+}
+
+/// The vertices as a reader of the file will have them: rounded to 32 bits or
+/// to so many digits, where the format or the options ask for it.
+pub fn as_written(format: MeshFormat, vertices: &[Point], options: &WriteOptions) -> Vec<Point> {
+    let single = |p: &Point| p.map(|c| f64::from(c as f32));
+    let digits = options.digits;
+    let text = |p: &Point| p.map(|c| buffer::with_digits(c, digits));
+    let all = |round: &dyn Fn(&Point) -> Point| vertices.iter().map(round).collect();
+    match format {
+        MeshFormat::Ply if options.float32 && options.ascii => {
+            all(&|p| text(&single(p)).map(|c| f64::from(c as f32)))
+        }
+        MeshFormat::Ply if options.float32 => all(&single),
+        MeshFormat::Stl if !options.ascii => all(&single),
+        MeshFormat::Ply if !options.ascii => vertices.to_vec(),
+        MeshFormat::Glb => glb::as_written(vertices),
+        _ => all(&text),
     }
 }
 

@@ -46,6 +46,12 @@ impl Cuboid {
         }
     }
 
+    /// The smallest box around both.
+    pub fn joined(mut self, other: &Cuboid) -> Cuboid {
+        self.join(other);
+        self
+    }
+
     /// Whether the closed boxes have a point in common.
     #[inline]
     pub fn meets(&self, other: &Cuboid) -> bool {
@@ -258,6 +264,37 @@ impl Bvh {
             }
         }
         best
+    }
+
+    /// Gives a slot another box; those of the nodes above follow.
+    pub fn replace(&mut self, slot: u32, cuboid: Cuboid) {
+        self.boxes[slot as usize] = cuboid;
+        // Down to the leaf, then back up.
+        let mut path = [0u32; 64];
+        let mut depth = 0;
+        let mut at = 0u32;
+        while self.nodes[at as usize].right != 0 {
+            path[depth] = at;
+            depth += 1;
+            let right = at + self.nodes[at as usize].right;
+            at = if slot < self.nodes[right as usize].first {
+                at + 1
+            } else {
+                right
+            };
+        }
+        let leaf = &self.nodes[at as usize];
+        let mut whole = Cuboid::EMPTY;
+        for s in leaf.first..leaf.first + leaf.count {
+            whole.join(&self.boxes[s as usize]);
+        }
+        self.nodes[at as usize].cuboid = whole;
+        for &up in path[..depth].iter().rev() {
+            let mut whole = self.nodes[up as usize + 1].cuboid;
+            let right = up + self.nodes[up as usize].right;
+            whole.join(&self.nodes[right as usize].cuboid);
+            self.nodes[up as usize].cuboid = whole;
+        }
     }
 
     /// Calls `visit` with every slot whose box meets the given one.

@@ -8,23 +8,35 @@ mod bvh;
 mod check;
 pub(crate) mod clash;
 mod crossing;
+mod decimate;
 mod distance;
 mod frame;
 mod intersect;
 mod measure;
+mod moving;
 mod nesting;
 mod polygon;
+mod quadric;
 mod report;
 mod soup;
 mod topology;
 mod wide;
 
 pub use check::{check, CheckOptions};
+pub use decimate::{decimate, deviation, DecimateError, Decimated, Deviation};
 pub use distance::Surface;
 pub use measure::{component_volumes, components};
+pub use nesting::enclosing;
 pub use report::{Counts, Finding, Report, Shell};
 
 use crate::geom::Point;
+
+/// The triangles that the faces of a mesh fall into, in their order, cut as
+/// [`check()`] cuts them; faces that cannot be walked are left out.
+pub fn triangles(mesh: &PolygonMesh) -> Vec<[u32; 3]> {
+    let faces = soup::Faces::of(mesh, |_, _| ());
+    faces.triangles(&frame::Frame::new(&mesh.vertices)).corners
+}
 
 /// A polygon mesh: vertex positions, and faces as runs of vertex indices,
 /// counterclockwise seen from outside.

@@ -6,9 +6,11 @@
 //! by a symbolic amount, `e` in y and `e^2` in z, so that it meets no edge.
 
 use super::bvh::Cuboid;
-use super::crossing::Field;
-use super::frame::Kernel;
-use super::soup::place;
+use super::crossing::{coincidences, flat, Field};
+use super::frame::{Frame, Kernel};
+use super::soup::{place, Faces};
+use super::topology::Topology;
+use super::PolygonMesh;
 use crate::geom::Point;
 use rayon::prelude::*;
 
@@ -16,14 +18,54 @@ use rayon::prelude::*;
 /// that are not closed or have all their corners at corners of other shells.
 /// `shells` tells the shell of each face.
 pub(super) fn depths(field: &Field, shells: &[u32], closed: &[bool]) -> Vec<Option<u32>> {
+    let around = around(field, shells, closed);
+    around
+        .iter()
+        .map(|a| Some(a.as_ref()?.len() as u32))
+        .collect()
+}
+
+/// For each shell the closed shells around it; `None` as in [`depths`].
+fn around(field: &Field, shells: &[u32], closed: &[bool]) -> Vec<Option<Vec<u32>>> {
     let witnesses = witnesses(field, shells, closed.len());
     (0..closed.len())
         .into_par_iter()
         .map(|s| match (closed[s], witnesses[s]) {
-            (true, Some(v)) => Some(depth(field, shells, closed, s as u32, v)),
+            (true, Some(v)) => Some(around_vertex(field, shells, closed, s as u32, v)),
             _ => None,
         })
         .collect()
+}
+
+/// For each shell of [`super::components`] the numbers of the closed shells
+/// around it, in order: none for a solid that lies free, one for the wall of a
+/// cavity in it, two for what lies in that cavity. `None` for shells that are
+/// not closed, or that touch other shells at every corner. Shells that cross
+/// give no sensible answer.
+pub fn enclosing(mesh: &PolygonMesh) -> Vec<Option<Vec<u32>>> {
+    let faces = Faces::of(mesh, |_, _| ());
+    let topology = Topology::of(mesh.vertices.len(), &faces);
+    let mut closed = vec![true; topology.shell_edges.len()];
+    for bad in &topology.bad {
+        let corner = topology.bad_corners[bad.corners.0 as usize];
+        let face = faces.starts.partition_point(|&s| s <= corner) - 1;
+        closed[topology.shell[face] as usize] = false;
+    }
+    if closed.len() < 2 {
+        return closed.iter().map(|&c| c.then(Vec::new)).collect();
+    }
+    let finite: Vec<bool> = (mesh.vertices.iter())
+        .map(|p| p.iter().all(|x| x.is_finite()))
+        .collect();
+    let frame = Frame::new(&mesh.vertices);
+    let triangles = faces.triangles(&frame);
+    let mut skip = flat(&frame, &triangles);
+    for (skip, t) in skip.iter_mut().zip(&triangles.corners) {
+        *skip |= !t.iter().all(|&v| finite[v as usize]);
+    }
+    let (canonical, _) = coincidences(&frame, &finite);
+    let field = Field::new(&frame, &canonical, &triangles, &skip);
+    around(&field, &topology.shell, &closed)
 }
 
 /// For each shell a vertex at whose position no other shell has one.
@@ -50,8 +92,8 @@ fn witnesses(field: &Field, shells: &[u32], count: usize) -> Vec<Option<u32>> {
     witnesses
 }
 
-/// The number of closed shells but `own` around vertex `v`.
-fn depth(field: &Field, shells: &[u32], closed: &[bool], own: u32, v: u32) -> u32 {
+/// The closed shells but `own` around vertex `v`.
+fn around_vertex(field: &Field, shells: &[u32], closed: &[bool], own: u32, v: u32) -> Vec<u32> {
     let p = field.frame.points[v as usize];
     let ray = Cuboid {
         min: p,
@@ -68,7 +110,7 @@ fn depth(field: &Field, shells: &[u32], closed: &[bool], own: u32, v: u32) -> u3
     });
     hit.sort_unstable();
     let odd = hit.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1);
-    odd.count() as u32
+    odd.map(|g| g[0]).collect()
 }
 
 /// Whether the ray from `p`, which is not on the triangle, meets it.

@@ -1,9 +1,11 @@
 //! From labelled power cells to the surface (section 5 of the paper, steps 5
 //! and 6): the crust between inner and outer cells, and the power shape.
 
+pub mod attributes;
 #[cfg(test)]
 mod check;
 mod clean;
+pub mod components;
 mod contract;
 mod extract;
 mod flat;
@@ -27,7 +29,9 @@ pub(crate) mod stage;
 mod tests;
 mod triangulate;
 mod unfold;
+pub use attributes::VertexSources;
 pub use clean::{clean, CleanOptions};
+pub use components::{filter_shells, Keep, MinVolume, Selection, ShellFilter, Shells};
 pub use extract::{raw_crust, Placement};
 pub use mend::{mend_crust, MendOptions, Mending};
 pub use raw::{Crust, RawCrust, NONE};

@@ -1,0 +1,174 @@
+//! What the user says in words that are no plain numbers: which values the
+//! mesh carries, which parts it keeps, sizes with units.
+
+use powercrust::io::MeshFormat;
+use powercrust::surface::{Keep, MinVolume};
+
+/// The names of `--attributes` that are not columns of the input.
+pub const OWN: [&str; 7] = [
+    "sample",
+    "normals",
+    "colours",
+    "thickness",
+    "gap",
+    "component",
+    "hole",
+];
+
+/// Which values go into the mesh file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Wanted {
+    /// What the input had, and the samples.
+    #[default]
+    Given,
+    /// Everything there is.
+    All,
+    /// None.
+    Bare,
+    /// These.
+    List(Vec<String>),
+}
+
+impl Wanted {
+    /// Reads `all`, `none` or names between commas.
+    pub fn parse(text: &str) -> Result<Wanted, String> {
+        match text {
+            "all" => Ok(Wanted::All),
+            "none" => Ok(Wanted::Bare),
+            _ => {
+                let names: Vec<String> = text.split(',').map(|n| n.trim().to_owned()).collect();
+                match names.iter().any(String::is_empty) {
+                    true => Err("expected all, none or names between commas".to_owned()),
+                    false => Ok(Wanted::List(names)),
+                }
+            }
+        }
+    }
+
+    /// Whether a value is named.
+    pub fn names(&self, name: &str) -> bool {
+        matches!(self, Wanted::List(names) if names.iter().any(|n| n == name))
+    }
+
+    /// Whether a value is wanted; `given` tells if it is so by default.
+    pub fn wants(&self, name: &str, given: bool) -> bool {
+        match self {
+            Wanted::Given => given,
+            Wanted::All => true,
+            Wanted::Bare => false,
+            Wanted::List(_) => self.names(name),
+        }
+    }
+
+    /// A value named that files of this format cannot hold.
+    pub fn beyond(&self, format: MeshFormat) -> Option<&str> {
+        let Wanted::List(names) = self else {
+            return None;
+        };
+        let holds = |name: &str| match format {
+            MeshFormat::Stl => false,
+            MeshFormat::Obj | MeshFormat::Off | MeshFormat::Glb => {
+                matches!(name, "normals" | "colours")
+            }
+            _ => true,
+        };
+        names.iter().map(String::as_str).find(|name| !holds(name))
+    }
+}
+
+/// Reads `all`, `largest` or a number of parts.
+pub fn keep(text: &str) -> Result<Keep, String> {
+    match text {
+        "all" => Ok(Keep::All),
+        "largest" => Ok(Keep::Largest(1)),
+        _ => match text.parse::<usize>() {
+            Ok(count) if count > 0 => Ok(Keep::Largest(count)),
+            _ => Err("expected all, largest or a number of parts".to_owned()),
+        },
+    }
+}
+
+/// Reads a volume, or a share of the total with `%`.
+pub fn min_volume(text: &str) -> Result<MinVolume, String> {
+    let (number, share) = match text.strip_suffix('%') {
+        Some(number) => (number, true),
+        None => (text, false),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(v) if share && (0.0..=100.0).contains(&v) => Ok(MinVolume::Share(v / 100.0)),
+        Ok(v) if !share && v >= 0.0 && v.is_finite() => Ok(MinVolume::Absolute(v)),
+        _ => Err("expected a volume, or a share of the total such as 1%".to_owned()),
+    }
+}
+
+/// Reads a factor above 1.
+pub fn reduce(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(factor) if factor > 1.0 && factor.is_finite() => Ok(factor),
+        _ => Err("expected a number above 1".to_owned()),
+    }
+}
+
+/// How many triangles to reduce to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fewer {
+    /// So many.
+    Faces(usize),
+    /// One in so many.
+    OneIn(f64),
+}
+
+impl Fewer {
+    /// The number, of a mesh of so many triangles.
+    pub fn of(self, faces: usize) -> usize {
+        match self {
+            Fewer::Faces(n) => n,
+            Fewer::OneIn(factor) => ((faces as f64 / factor) as usize).max(4),
+        }
+    }
+}
+
+/// Reads a number of bytes with a unit of 1024: `800M`, `2G`, `1.5GiB`.
+pub fn size(text: &str) -> Result<u64, String> {
+    let at = text
+        .find(|c: char| c.is_ascii_alphabetic())
+        .unwrap_or(text.len());
+    let (number, unit) = text.split_at(at);
+    let power = match unit.to_ascii_lowercase().as_str() {
+        "" | "b" => Some(0),
+        "k" | "kb" | "kib" => Some(1),
+        "m" | "mb" | "mib" => Some(2),
+        "g" | "gb" | "gib" => Some(3),
+        "t" | "tb" | "tib" => Some(4),
+        _ => None,
+    };
+    match (number.trim().parse::<f64>(), power) {
+        (Ok(n), Some(power)) if n > 0.0 && n.is_finite() => Ok((n * 1024f64.powi(power)) as u64),
+        _ => Err("expected a size such as 800M or 2G".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read() {
+        assert_eq!(Wanted::parse("all"), Ok(Wanted::All));
+        assert!(Wanted::parse("hole, sample").unwrap().names("sample"));
+        assert!(Wanted::parse("hole,").is_err());
+        let list = Wanted::parse("normals,hole").unwrap();
+        assert_eq!(list.beyond(MeshFormat::Obj), Some("hole"));
+        assert_eq!(list.beyond(MeshFormat::Ply), None);
+        assert_eq!(keep("largest"), Ok(Keep::Largest(1)));
+        assert_eq!(keep("3"), Ok(Keep::Largest(3)));
+        assert!(keep("0").is_err() && keep("some").is_err());
+        assert_eq!(min_volume("1%"), Ok(MinVolume::Share(0.01)));
+        assert_eq!(min_volume("2.5"), Ok(MinVolume::Absolute(2.5)));
+        assert!(min_volume("-1").is_err() && min_volume("101%").is_err());
+        assert_eq!(size("2G"), Ok(2 << 30));
+        assert_eq!(size("1.5k"), Ok(1536));
+        assert_eq!(size("100"), Ok(100));
+        assert!(size("2X").is_err() && size("-1G").is_err() && size("").is_err());
+    }
+}
