@@ -9,7 +9,7 @@
 //!    it. Cells whose rounded centres coincide are one ball that touches the
 //!    samples of all of them: on a sphere every inner pole is the centre.
 //! 4. With a bound `lambda`, poles that fail the skinniness test are dropped
-//!    ([`skinny`]).
+//!    (`skinny.rs`).
 //!
 //! Balls come numbered along a space-filling curve by their centres, so their
 //! ids depend on nothing but the set of samples.

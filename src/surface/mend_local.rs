@@ -79,7 +79,7 @@ pub(crate) fn mend(
         let mut steps = 0u64;
         while let Some((s, t)) = queue.pop() {
             steps += 1;
-            if steps % 256 == 0 {
+            if steps.is_multiple_of(256) {
                 cx.advance(Stage::Crust, 2, 3)?;
             }
             if !work.bad(s, t) {
