@@ -26,3 +26,8 @@ pub use options::{Faces, Options};
 pub use pipeline::{reconstruct, PolarBall, Reconstruction};
 pub use stats::Stats;
 pub use surface::{Crust, PowerShape};
+
+/// The examples of the README are tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -22,6 +22,17 @@ pub struct Options {
     pub merge: f64,
     /// Polygons as the power diagram has them, or triangles.
     pub faces: Faces,
+    /// Whether the surface must pass through every sample, as far as balls
+    /// can be found that make it. `None`: unless so many samples are off it
+    /// that they must be noise, or `sharp` says otherwise.
+    pub interpolate: Option<bool>,
+    /// How far the surface may move to lose a vertex that is no sample, as a
+    /// share of the local spacing of the samples; in [0, 1]. With 0 the faces
+    /// are those of the power diagram, but for what must be mended.
+    pub flatness: f64,
+    /// Round coordinates to single precision, as files of it hold them, and
+    /// make sure of the surface on those.
+    pub single: bool,
 }
 
 /// The kind of faces wanted.
@@ -42,7 +53,10 @@ impl Default for Options {
             deep_angle: 113.578_178_478_201_83,
             box_factor: 5.0,
             merge: 0.5,
+            interpolate: None,
             faces: Faces::Triangles,
+            flatness: 0.05,
+            single: false,
         }
     }
 }
@@ -86,6 +100,8 @@ impl Options {
         let ok = (2.0..=100.0).contains(&self.box_factor);
         within("box_factor", self.box_factor, ok, "a number in [2, 100]")?;
         let ok = (0.0..=1.0).contains(&self.merge);
-        within("merge", self.merge, ok, "a number in [0, 1]")
+        within("merge", self.merge, ok, "a number in [0, 1]")?;
+        let ok = (0.0..=1.0).contains(&self.flatness);
+        within("flatness", self.flatness, ok, "a number in [0, 1]")
     }
 }

@@ -6,15 +6,16 @@ use crate::context::{Context, Stage};
 use crate::delaunay::{delaunay, samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
-use crate::label::{energy, label, opposites, Evidence, LabelOptions, Neighbours};
-use crate::options::{Faces, Options};
+use crate::label::{
+    energy, hold, label, opposites, refine, Evidence, LabelOptions, Neighbours, MOST_UNHELD,
+};
+use crate::options::Options;
 use crate::poles::{poles, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::merge_redundant;
 use crate::stats::Stats;
-use crate::surface::{
-    clean, power_shape, raw_crust, triangulate, CleanOptions, Crust, Placement, PowerShape,
-};
+use crate::surface::stage::Job;
+use crate::surface::{power_shape, Crust, PowerShape};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,26 +103,20 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.skinny_samples = poles.skinny_samples;
     stats.poles_dropped = poles.dropped;
     stats.poles = poles.balls.len();
-    let poles = merge_redundant(&samples, &delaunay, poles, options.merge);
-    drop(delaunay);
+    let (mut poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge);
     stats.balls = poles.balls.len();
     clock.lap(Stage::Poles, &mut stats);
 
     // 3. Power diagram.
     let step = poles.balls.lattice.step();
-    let power = power_diagram(&poles.balls.sites, step, context)?;
+    let mut power = power_diagram(&poles.balls.sites, step, context)?;
     stats.power_cells = power.complex.len();
     stats.hidden_balls = power.hidden.len();
     stats.power_predicates = power.counts;
     clock.lap(Stage::Power, &mut stats);
 
     // 4. Labels, by the geometry on the lattice: no overflow at any scale.
-    let on_lattice: Vec<Ball> = poles
-        .balls
-        .sites
-        .iter()
-        .map(|s| Ball::new([s[0] * step, s[1] * step, s[2] * step], s[3].sqrt() * step))
-        .collect();
+    let on_lattice = poles.balls.on_lattice();
     let sites: Vec<Point> = samples.sites.iter().map(|s| [s[0], s[1], s[2]]).collect();
     let pairs = opposites(&poles.of_sample, &sites, &on_lattice);
     let evidence = Evidence {
@@ -133,47 +128,38 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     let how = LabelOptions {
         deep: -options.deep_angle.to_radians().cos(),
     };
-    let labels = label(&evidence, &neighbours, &how, context)?;
+    let mut labels = label(&evidence, &neighbours, &how, context)?;
+    stats.greedy_energy = energy(&evidence, &neighbours, &labels.sides, &how);
+    stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
     stats.unreached_balls = labels.unreached;
     stats.label_energy = energy(&evidence, &neighbours, &labels.sides, &how);
-    stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();
     drop(neighbours);
+    let most = match (options.sharp, options.interpolate) {
+        (_, Some(true)) => 1.0,
+        (_, Some(false)) | (true, None) => 0.0,
+        (false, None) => MOST_UNHELD,
+    };
+    let balls = &mut poles.balls;
+    stats.held = hold(&delaunay, balls, &mut power, &mut labels, most, context)?;
+    drop(delaunay);
+    let on_lattice = balls.on_lattice();
+    stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();
     clock.lap(Stage::Labels, &mut stats);
 
     // 5. Crust.
-    context.advance(Stage::Crust, 0, 3)?;
-    let lattice = samples.lattice;
-    let place = Placement {
-        touching: &|b| poles.balls.touching(b),
-        sample: &|s| samples.points[s as usize],
-        to_user: &|p| lattice.to_user([p[0] * step, p[1] * step, p[2] * step]),
+    let mut sides = labels.sides;
+    let job = Job {
+        samples: &samples,
+        spacing: &spacing,
+        balls: &poles.balls,
+        power: &power,
+        options,
     };
-    let raw = raw_crust(&power, &labels.sides, &place);
-    if raw.balls.is_empty() {
-        return Err(Error::NothingInside {
-            samples: samples.len(),
-        });
-    }
-    stats.power_faces = raw.balls.len();
-    context.advance(Stage::Crust, 1, 3)?;
-    let mut crust = clean(raw, &CleanOptions::default());
-    stats.polygons = crust.mesh.face_count();
-    context.advance(Stage::Crust, 2, 3)?;
-    if options.faces == Faces::Triangles {
-        crust = triangulate(&crust);
-    }
-    if crust.mesh.face_count() == 0 {
-        return Err(Error::NothingInside {
-            samples: samples.len(),
-        });
-    }
-    stats.vertices = crust.mesh.vertices.len();
-    stats.faces = crust.mesh.face_count();
-    stats.volume = crust.mesh.volume();
-    context.advance(Stage::Crust, 3, 3)?;
+    let crust = job.run(&mut sides, &mut stats, context)?;
+    let lattice = samples.lattice;
     let balls = on_lattice
         .iter()
-        .zip(&labels.sides)
+        .zip(&sides)
         .enumerate()
         .map(|(b, (ball, &side))| PolarBall {
             ball: Ball::new(

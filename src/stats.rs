@@ -1,6 +1,6 @@
 //! Counts, timings and options of one run: the content of `--stats`.
 
-use crate::label::Energy;
+use crate::label::{Energy, Held};
 use crate::options::Options;
 use crate::predicates::Counts;
 
@@ -29,19 +29,42 @@ pub struct Stats {
     pub inner_balls: usize,
     /// Balls that no evidence reached.
     pub unreached_balls: u32,
+    /// Samples that were off the crust and the balls added for them.
+    pub held: Held,
     /// Cells of the regular triangulation, sentinels included.
     pub power_cells: usize,
     /// Power faces between inner and outer cells, before clean-up.
     pub power_faces: usize,
     /// Polygons of the crust.
     pub polygons: usize,
+    /// Pairs of triangles that crossed or touched where they share nothing,
+    /// and triangles of no area, before mending.
+    pub crossings_found: usize,
+    /// The same in the result: 0 but for a fault.
+    pub crossings_left: usize,
+    /// Rounds of mending.
+    pub mend_rounds: usize,
+    /// Changes made to mend.
+    pub mended_faces: usize,
+    /// Vertices drawn apart where sheets of the solid touched.
+    pub drawn_apart: usize,
+    /// Vertices that are no samples taken out of flat places.
+    pub flattened: usize,
+    /// Samples taken out of tangles that nothing else undid.
+    pub samples_lost: usize,
+    /// Balls that changed sides because the surface crossed itself there.
+    pub relabelled: usize,
     /// Faces written (triangles unless polygons were asked for).
     pub faces: usize,
     /// Vertices written.
     pub vertices: usize,
     /// Volume enclosed, in the cube of the input's unit.
     pub volume: f64,
-    /// The evidence the labels go against.
+    /// The evidence the labels of the greedy pass go against.
+    pub greedy_energy: Energy,
+    /// Labels changed afterwards to lower it.
+    pub flips: u32,
+    /// The evidence the final labels go against.
     pub label_energy: Energy,
     /// Decisions of the Delaunay triangulation by stage.
     pub delaunay_predicates: Counts,
@@ -68,12 +91,23 @@ impl Stats {
             hidden_balls: 0,
             inner_balls: 0,
             unreached_balls: 0,
+            held: Held::default(),
             power_cells: 0,
             power_faces: 0,
             polygons: 0,
+            crossings_found: 0,
+            crossings_left: 0,
+            mend_rounds: 0,
+            mended_faces: 0,
+            drawn_apart: 0,
+            flattened: 0,
+            samples_lost: 0,
+            relabelled: 0,
             faces: 0,
             vertices: 0,
             volume: 0.0,
+            greedy_energy: Energy::default(),
+            flips: 0,
             label_energy: Energy::default(),
             delaunay_predicates: Counts::default(),
             power_predicates: Counts::default(),

@@ -632,6 +632,22 @@ fn json_summary() {
 }
 
 #[test]
+fn crossing_faces_are_counted_on_request() {
+    let place = Place::with_torus();
+    let plain = place.run("torus.xyz -o crust.ply --json").code(DONE);
+    assert!(!plain.stderr.contains("cross"));
+    assert_eq!(plain.json()["mesh"]["closed"], true);
+    let checked = place
+        .run("torus.xyz -o crust.ply --json --check")
+        .code(DONE);
+    let crossing = &checked.json()["mesh"]["crossing"];
+    let judged = place.run("check crust.ply --json").json();
+    assert_eq!(*crossing, judged["counts"]["crossing"]);
+    assert_eq!(checked.json()["mesh"]["sound"], judged["ok"]);
+    checked.says(" cross");
+}
+
+#[test]
 fn streams_give_the_bytes_of_files() {
     let place = Place::with_torus();
     place.run("torus.xyz -o crust.ply").code(DONE);

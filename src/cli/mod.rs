@@ -97,3 +97,17 @@ fn guarded(work: impl FnOnce() -> ExitCode) -> ExitCode {
     }));
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Code::Internal.into())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_an_exit_code() {
+        let hook = std::panic::take_hook();
+        let code = guarded(|| panic!("on purpose, for a test"));
+        std::panic::set_hook(hook);
+        let expected = ExitCode::from(Code::Internal);
+        assert_eq!(format!("{code:?}"), format!("{expected:?}"));
+    }
+}

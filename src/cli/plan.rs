@@ -36,6 +36,8 @@ pub struct Plan {
     pub poles: Option<Out<()>>,
     pub stats: Option<Out<()>>,
     pub json: bool,
+    /// Look for crossing faces too.
+    pub check: bool,
     pub talk: Talk,
     /// What was decided for the user, for `-v`.
     pub decisions: Vec<String>,
@@ -94,6 +96,7 @@ impl Plan {
             options,
             threads: args.threads,
             json: args.json,
+            check: args.check,
             talk: Talk::new(args.quiet, args.verbose),
             decisions,
         };
@@ -223,6 +226,8 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         } else {
             Faces::Triangles
         },
+        single: args.f32,
+        ..plain
     };
     match options.validate() {
         Ok(()) => Ok(options),

@@ -11,6 +11,7 @@ mod samples;
 mod voronoi;
 
 pub use check::{check, Finding};
+pub(crate) use samples::times_power;
 pub use samples::{samples, Lattice, Samples};
 pub use voronoi::{circumcentre, Centre};
 

@@ -52,6 +52,15 @@ impl Lattice {
         [0, 1, 2].map(|k| self.centre[k] + times_power(p[k], -self.exponent))
     }
 
+    /// The power of two that brings the user's coordinates to about 1 in size
+    /// (its binary exponent): scaling by it is exact, and products of scaled
+    /// coordinates neither overflow nor vanish.
+    pub fn unit_exponent(&self) -> i32 {
+        let reach = self.length_to_user(self.sample_half);
+        let largest = self.centre.iter().fold(reach, |m, v| m.max(v.abs()));
+        -exponent(largest)
+    }
+
     /// A length in lattice steps, in the user's units.
     pub fn length_to_user(&self, length: f64) -> f64 {
         times_power(length, -self.exponent)
@@ -59,7 +68,7 @@ impl Lattice {
 }
 
 /// `v * 2^e` without overflow on the way.
-fn times_power(v: f64, e: i32) -> f64 {
+pub(crate) fn times_power(v: f64, e: i32) -> f64 {
     let step = |e: i32| f64::from_bits(((e + 1023) as u64) << 52);
     let (mut v, mut e) = (v, e);
     while e > 1000 {

@@ -11,11 +11,15 @@
 
 mod check;
 mod energy;
+mod hold;
 mod propagate;
+mod refine;
 
 pub use check::{check, Finding};
 pub use energy::{energy, Energy};
+pub use hold::{hold, Held, MOST_UNHELD};
 pub use propagate::label;
+pub use refine::refine;
 
 use crate::geom::{Ball, Side};
 use crate::poles::NO_POLE;
@@ -120,6 +124,43 @@ impl Neighbours {
 
     /// The neighbours of a ball, ascending.
     pub fn at(&self, ball: u32) -> &[u32] {
+        let b = ball as usize;
+        &self.items[self.starts[b] as usize..self.starts[b + 1] as usize]
+    }
+}
+
+/// The opposite pairs, by ball.
+pub(crate) struct Partners {
+    starts: Vec<u32>,
+    items: Vec<(u32, f64)>,
+}
+
+impl Partners {
+    pub(crate) fn of(balls: usize, opposites: &[Opposite]) -> Partners {
+        let mut starts = vec![0u32; balls + 1];
+        for pair in opposites {
+            for p in pair.poles {
+                starts[p as usize + 1] += 1;
+            }
+        }
+        for b in 0..balls {
+            starts[b + 1] += starts[b];
+        }
+        let mut next = starts.clone();
+        let mut items = vec![(0, 0.0); opposites.len() * 2];
+        for pair in opposites {
+            for (p, q) in [
+                (pair.poles[0], pair.poles[1]),
+                (pair.poles[1], pair.poles[0]),
+            ] {
+                items[next[p as usize] as usize] = (q, pair.weight);
+                next[p as usize] += 1;
+            }
+        }
+        Partners { starts, items }
+    }
+
+    pub(crate) fn at(&self, ball: u32) -> &[(u32, f64)] {
         let b = ball as usize;
         &self.items[self.starts[b] as usize..self.starts[b + 1] as usize]
     }

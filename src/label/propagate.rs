@@ -14,7 +14,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use priority_queue::PriorityQueue;
 
-use super::{Evidence, LabelOptions, Labels, Neighbours, Opposite};
+use super::{Evidence, LabelOptions, Labels, Neighbours, Partners};
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::Side;
 
@@ -62,7 +62,7 @@ pub fn label(
     let mut unreached = 0;
     let mut done = 0u64;
     while let Some((p, _)) = queue.pop() {
-        if done % 4096 == 0 {
+        if done.is_multiple_of(4096) {
             context.advance(Stage::Labels, done, count as u64)?;
         }
         done += 1;
@@ -182,40 +182,3 @@ impl Hasher for Spread {
 }
 
 type Queue = PriorityQueue<u32, Priority, BuildHasherDefault<Spread>>;
-
-/// The opposite pairs, by ball.
-struct Partners {
-    starts: Vec<u32>,
-    items: Vec<(u32, f64)>,
-}
-
-impl Partners {
-    fn of(balls: usize, opposites: &[Opposite]) -> Partners {
-        let mut starts = vec![0u32; balls + 1];
-        for pair in opposites {
-            for p in pair.poles {
-                starts[p as usize + 1] += 1;
-            }
-        }
-        for b in 0..balls {
-            starts[b + 1] += starts[b];
-        }
-        let mut next = starts.clone();
-        let mut items = vec![(0, 0.0); opposites.len() * 2];
-        for pair in opposites {
-            for (p, q) in [
-                (pair.poles[0], pair.poles[1]),
-                (pair.poles[1], pair.poles[0]),
-            ] {
-                items[next[p as usize] as usize] = (q, pair.weight);
-                next[p as usize] += 1;
-            }
-        }
-        Partners { starts, items }
-    }
-
-    fn at(&self, ball: u32) -> &[(u32, f64)] {
-        let b = ball as usize;
-        &self.items[self.starts[b] as usize..self.starts[b + 1] as usize]
-    }
-}

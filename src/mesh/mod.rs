@@ -6,6 +6,7 @@
 
 mod bvh;
 mod check;
+pub(crate) mod clash;
 mod crossing;
 mod distance;
 mod frame;

@@ -15,11 +15,13 @@
 //! ids depend on nothing but the set of samples.
 
 mod balls;
+mod candidates;
 mod check;
 mod select;
 mod skinny;
 
 pub use balls::{BallLattice, Balls};
+pub use candidates::Candidates;
 pub use check::{check, Finding};
 
 use crate::context::{Cancelled, Context, Stage};

@@ -14,7 +14,7 @@ use crate::context::{Context, Stage};
 use crate::delaunay::{circumcentre, corners, Centre};
 use crate::error::Error;
 use crate::predicates::{Counts, Site, LIMIT};
-use crate::tetra::{triangulate, Complex, InPower};
+use crate::tetra::{extend, locate, triangulate, Complex, InPower, NONE};
 
 /// The regular triangulation of balls and sentinels.
 #[derive(Clone, Debug)]
@@ -37,6 +37,94 @@ impl PowerDiagram {
     #[inline]
     pub fn is_sentinel(&self, v: u32) -> bool {
         v as usize >= self.balls
+    }
+
+    /// The ball whose power at a site is least, found by walking from a cell;
+    /// `None` for a sentinel.
+    pub fn owner(&self, site: &Site, hint: u32) -> Option<u32> {
+        let mut counts = Counts::default();
+        let cell = locate(&self.complex, &self.sites, site, hint, &mut counts);
+        let at = |v: u32| {
+            let s = &self.sites[v as usize];
+            let d = [s[0] - site[0], s[1] - site[1], s[2] - site[2]];
+            d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - s[3]
+        };
+        // Cells are convex: a ball that is not the owner has a neighbour of
+        // less power, so going downhill ends at the owner.
+        let least = |corners: [u32; 4], best: u32| {
+            let all = corners.into_iter().chain([best]);
+            all.min_by(|&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)))
+                .unwrap_or(best)
+        };
+        let corners = self.complex.cells[cell as usize];
+        let mut best = least(corners, corners[0]);
+        let mut star = vec![cell];
+        let mut next = 0;
+        while next < star.len() {
+            let c = star[next];
+            next += 1;
+            let better = least(self.complex.cells[c as usize], best);
+            if at(better) < at(best) {
+                best = better;
+                star.clear();
+                star.push(c);
+                next = 0;
+                continue;
+            }
+            for packed in self.complex.neighbours[c as usize] {
+                let d = packed >> 2;
+                let around = packed != NONE
+                    && self.complex.cells[d as usize].contains(&best)
+                    && !star.contains(&d);
+                if around {
+                    star.push(d);
+                }
+            }
+        }
+        (!self.is_sentinel(best)).then_some(best)
+    }
+
+    /// Inserts more balls: they get the ids after the present ones. The rules
+    /// of [`power_diagram`] hold for all of them together.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] and [`Error::Cancelled`]; the diagram has lost its
+    /// cells then.
+    pub fn extend(&mut self, balls: &[Site], context: &Context) -> Result<(), Error> {
+        if balls.is_empty() {
+            return Ok(());
+        }
+        let (old, added) = (self.balls as u32, balls.len() as u32);
+        // The sentinels keep their ids while inserting; then they move back.
+        let mut sites = self.sites.clone();
+        sites.extend_from_slice(balls);
+        let complex = std::mem::take(&mut self.complex);
+        let built = extend(
+            &InPower(&sites),
+            complex,
+            old + 8..old + 8 + added,
+            Stage::Power,
+            context,
+        )?;
+        let renamed = |v: u32| match v {
+            v if v < old => v,
+            v if v < old + 8 => v + added,
+            v => v - 8,
+        };
+        self.complex = built.complex;
+        for cell in &mut self.complex.cells {
+            *cell = cell.map(renamed);
+        }
+        sites.copy_within(old as usize + 8.., old as usize);
+        let sentinels = self.sites[old as usize..].to_vec();
+        sites.truncate((old + added) as usize);
+        sites.extend(sentinels);
+        self.sites = sites;
+        self.balls += balls.len();
+        self.hidden.extend(built.hidden.into_iter().map(renamed));
+        self.hidden.sort_unstable();
+        self.counts += built.counts;
+        Ok(())
     }
 
     /// The power vertex dual to a cell, in the units of the sites.

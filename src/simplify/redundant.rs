@@ -8,7 +8,9 @@
 //! already within `d² / 8r` of the tube at spacing d. So the criterion here is what the
 //! balls are *for*: a ball goes when another one passes within `delta` of
 //! every sample it touches, on the same side, where `delta` is a share of the sampling
-//! error `h² / 2r` at the sample (h the local spacing). The ball that stays
+//! error `h² / 2r` at the sample (h the local spacing). Balls smaller than twice the
+//! spacing, as they occur beside edges and in thin parts, are left alone: there the
+//! error is not what that formula says. The ball that stays
 //! inherits the samples: by fact F2 the crust still passes through them.
 //!
 //! Greedy, largest ball first, so the result is unique up to equal radii,
@@ -23,7 +25,8 @@ use crate::geom::Point;
 use crate::poles::{Balls, Poles, NO_POLE};
 
 /// Merges redundant balls; `share` is the part of the sampling error by which
-/// a ball may miss a sample it stands for, 0 for none.
+/// a ball may miss a sample it stands for, 0 for none. The spacing of the
+/// samples, which this needs, comes with the balls, in steps of the lattice.
 ///
 /// ```
 /// use powercrust::{delaunay, poles, simplify::merge_redundant, Context};
@@ -38,17 +41,22 @@ use crate::poles::{Balls, Poles, NO_POLE};
 /// let delaunay = delaunay::delaunay(&samples, &cx)?;
 /// let all = poles::poles(&samples, &delaunay, &poles::PoleOptions::default(), &cx)?;
 /// let before = all.balls.len();
-/// let few = merge_redundant(&samples, &delaunay, all, 0.5);
+/// let (few, _) = merge_redundant(&samples, &delaunay, all, 0.5);
 /// assert!(few.balls.len() * 5 < before * 4, "{} of {before}", few.balls.len());
 /// # Ok::<(), powercrust::Error>(())
 /// ```
-pub fn merge_redundant(samples: &Samples, delaunay: &Delaunay, poles: Poles, share: f64) -> Poles {
-    if share <= 0.0 {
-        return poles;
-    }
+pub fn merge_redundant(
+    samples: &Samples,
+    delaunay: &Delaunay,
+    poles: Poles,
+    share: f64,
+) -> (Poles, Vec<f64>) {
     let graph = SampleGraph::of(delaunay);
+    if share <= 0.0 {
+        return (poles, graph.spacing);
+    }
     let survivors = greedy(samples, &poles, &graph, share);
-    renumber(poles, &survivors)
+    (renumber(poles, &survivors), graph.spacing)
 }
 
 /// The samples as a graph, with the local spacing.
@@ -139,6 +147,9 @@ fn greedy(samples: &Samples, poles: &Poles, graph: &SampleGraph, share: f64) -> 
         let radius = balls.sites[c as usize][3].sqrt() * step;
         let covers = |s: u32| {
             let h = graph.spacing[s as usize];
+            if 2.0 * h > radius {
+                return false;
+            }
             let miss = (dist_sq(site(s), middle).sqrt() - radius).abs();
             2.0 * radius * miss <= share * h * h
         };
@@ -164,14 +175,16 @@ fn greedy(samples: &Samples, poles: &Poles, graph: &SampleGraph, share: f64) -> 
                     continue;
                 }
                 let other = centre(p);
+                let small = balls.sites[p as usize][3].sqrt() * step;
                 let same_side = |s: u32| {
                     let (a, b) = (sub(middle, site(s)), sub(other, site(s)));
                     dot(a, b) > 0.5 * norm(a) * norm(b)
                 };
-                let redundant = balls
-                    .touching(p)
-                    .iter()
-                    .all(|&t| covered[t as usize] == c && same_side(t));
+                let redundant = balls.touching(p).iter().all(|&t| {
+                    covered[t as usize] == c
+                        && 2.0 * graph.spacing[t as usize] <= small
+                        && same_side(t)
+                });
                 if redundant {
                     settled[p as usize] = true;
                     stands_for[p as usize] = c;

@@ -8,6 +8,11 @@ mod contract;
 mod extract;
 mod flat;
 mod halfedges;
+mod mend;
+mod mend_coarsen;
+mod mend_local;
+mod mend_mesh;
+mod mend_pinch;
 mod pinch;
 mod polygon;
 #[cfg(test)]
@@ -15,12 +20,15 @@ mod polygon_tests;
 pub mod raw;
 mod shape;
 mod short;
+pub(crate) mod stage;
 #[cfg(test)]
 mod tests;
 mod triangulate;
 mod unfold;
 pub use clean::{clean, CleanOptions};
 pub use extract::{raw_crust, Placement};
+pub use mend::{mend_crust, MendOptions, Mending};
 pub use raw::{Crust, RawCrust, NONE};
 pub use shape::{power_shape, PowerShape};
 pub use triangulate::triangulate;
+pub(crate) use triangulate::triangulate_from;

@@ -18,6 +18,12 @@ use crate::mesh::PolygonMesh;
 /// The same surface in triangles. Every triangle has the balls of the face it
 /// comes from; new vertices lie at no sample.
 pub fn triangulate(crust: &Crust) -> Crust {
+    triangulate_from(crust).0
+}
+
+/// The same, and the face that each triangle comes from.
+pub(crate) fn triangulate_from(crust: &Crust) -> (Crust, Vec<u32>) {
+    let mut faces = Vec::new();
     let mesh = &crust.mesh;
     let mut joined = Joined::new(mesh);
     let corners = mesh.corners.len();
@@ -30,9 +36,10 @@ pub fn triangulate(crust: &Crust) -> Crust {
     let mut points = Vec::new();
     for (f, face) in mesh.faces().enumerate() {
         let balls = crust.face_balls.get(f).copied().unwrap_or([NONE; 2]);
-        let push = |out: &mut Crust, triangle: [u32; 3]| {
+        let mut push = |out: &mut Crust, triangle: [u32; 3]| {
             out.mesh.push_face(&triangle);
             out.face_balls.push(balls);
+            faces.push(f as u32);
         };
         if let [a, b, c] = *face {
             push(&mut out, [a, b, c]);
@@ -61,7 +68,7 @@ pub fn triangulate(crust: &Crust) -> Crust {
             }
         }
     }
-    out
+    (out, faces)
 }
 
 /// A point on no line through a side of the polygon: the mean of its corners

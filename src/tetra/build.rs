@@ -1,11 +1,13 @@
 //! Incremental construction: walk to the site, replace what conflicts.
 
+use std::ops::Range;
+
 use super::cavity::Workspace;
 use super::complex::{unpack, Complex, MOST_CELLS, NONE};
 use super::{frame, Conflict};
 use crate::context::{Context, Stage};
 use crate::error::Error;
-use crate::predicates::{Counts, Sign};
+use crate::predicates::{orient, Counts, Sign, Site};
 
 /// Sites inserted between two reports of progress.
 const REPORT: u32 = 4096;
@@ -50,50 +52,103 @@ fn grow<C: Conflict>(
     let start = frame::frame(test, count, &mut counts);
     let mut work = Workspace::new(count as usize + 8, start.cells, start.neighbours);
     work.most = most;
+    insert(test, work, 0..count, counts, stage, context)
+}
+
+/// Inserts the sites `more` of `test` into a complex of other sites of it.
+///
+/// # Errors
+/// Those of [`triangulate`].
+pub fn extend<C: Conflict>(
+    test: &C,
+    complex: Complex,
+    more: Range<u32>,
+    stage: Stage,
+    context: &Context,
+) -> Result<Triangulation, Error> {
+    let work = Workspace::new(test.sites().len(), complex.cells, complex.neighbours);
+    insert(test, work, more, Counts::default(), stage, context)
+}
+
+fn insert<C: Conflict>(
+    test: &C,
+    mut work: Workspace,
+    sites: Range<u32>,
+    mut counts: Counts,
+    stage: Stage,
+    context: &Context,
+) -> Result<Triangulation, Error> {
+    let (first, total) = (sites.start, sites.len() as u64);
     let mut hint = 0;
-    for p in 0..count {
-        if p % REPORT == 0 {
-            context.advance(stage, p as u64, count as u64)?;
+    for p in sites {
+        if (p - first).is_multiple_of(REPORT) {
+            context.advance(stage, (p - first) as u64, total)?;
         }
-        let cell = walk(test, (&work.cells, &work.neighbours), hint, p, &mut counts);
+        let site = &test.sites()[p as usize];
+        let cell = walk(
+            test.sites(),
+            &work.cells,
+            &work.neighbours,
+            hint,
+            site,
+            &mut counts,
+        );
         hint = work.insert(test, p, cell, &mut counts)?.unwrap_or(cell);
     }
-    context.advance(stage, count as u64, count as u64)?;
-    let hidden = std::mem::take(&mut work.hidden);
-    let complex = compact(work);
-    let mut hidden = hidden;
+    context.advance(stage, total, total)?;
+    let mut hidden = std::mem::take(&mut work.hidden);
     hidden.sort_unstable();
     Ok(Triangulation {
-        complex,
+        complex: compact(work),
         hidden,
         counts,
     })
+}
+
+/// The cell of a complex that holds a site (its boundary included); the site
+/// must lie inside the frame.
+pub fn locate(
+    complex: &Complex,
+    sites: &[Site],
+    site: &Site,
+    hint: u32,
+    counts: &mut Counts,
+) -> u32 {
+    walk(
+        sites,
+        &complex.cells,
+        &complex.neighbours,
+        hint,
+        site,
+        counts,
+    )
 }
 
 /// The visibility walk: cross any facet that separates the site from the
 /// cell. In a regular triangulation, with exact signs, it cannot go round in
 /// circles (Edelsbrunner 1990).
 #[inline]
-pub(super) fn walk<C: Conflict>(
-    test: &C,
-    (cells, neighbours): (&[[u32; 4]], &[[u32; 4]]),
+fn walk(
+    sites: &[Site],
+    cells: &[[u32; 4]],
+    neighbours: &[[u32; 4]],
     hint: u32,
-    p: u32,
+    site: &Site,
     counts: &mut Counts,
 ) -> u32 {
     let mut at = hint;
     let mut from = NONE;
     'cell: loop {
-        let cell = cells[at as usize];
+        let corners = cells[at as usize].map(|v| &sites[v as usize]);
         let behind = neighbours[at as usize];
         for i in 0..4 {
             let next = behind[i];
             if next == NONE || next >> 2 == from {
                 continue;
             }
-            let mut replaced = cell;
-            replaced[i] = p;
-            if test.orient(replaced, counts) == Sign::Negative {
+            let mut c = corners;
+            c[i] = site;
+            if orient(c[0], c[1], c[2], c[3], counts) == Sign::Negative {
                 from = at;
                 at = unpack(next).0;
                 continue 'cell;

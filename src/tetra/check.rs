@@ -9,7 +9,7 @@
 //! 4. Every site has a cell or is listed as hidden, not both; a hidden site
 //!    does not conflict with the cell it lies in. The frame is never hidden.
 
-use super::build::walk;
+use super::build::locate;
 use super::complex::{unpack, Complex, NONE};
 use super::Conflict;
 use crate::predicates::{Counts, Sign};
@@ -128,8 +128,8 @@ pub fn check<C: Conflict>(complex: &Complex, hidden: &[u32], test: &C) -> Vec<Fi
         // The walk ends in triangulations that pass all of the above.
         let mut hint = 0;
         for &site in hidden {
-            let parts = (&complex.cells[..], &complex.neighbours[..]);
-            hint = walk(test, parts, hint, site, &mut counts);
+            let at = &test.sites()[site as usize];
+            hint = locate(complex, test.sites(), at, hint, &mut counts);
             if test.conflicts(complex.cells[hint as usize], site, &mut counts) {
                 found.push(Finding::WronglyHidden { site, cell: hint });
             }

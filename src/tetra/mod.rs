@@ -16,7 +16,7 @@ mod complex;
 mod frame;
 pub mod order;
 
-pub use build::{triangulate, Triangulation};
+pub use build::{extend, locate, triangulate, Triangulation};
 pub use check::{check, Finding};
 pub use complex::{facet_of, pack, unpack, Complex, FACETS, MOST_CELLS, NONE};
 

@@ -136,7 +136,16 @@ fn vector_area(mesh: &PolygonMesh, face: usize) -> Point {
     let corners = mesh.face(face);
     let mut twice = [0.0; 3];
     for [p, q, r] in fan(mesh, corners) {
-        twice = add(twice, cross(sub(q, p), sub(r, p)));
+        // Scaled by a power of two: areas in extreme units are numbers too.
+        let (u, v) = (sub(q, p), sub(r, p));
+        let size = u.iter().chain(&v).fold(0.0f64, |m, x| m.max(x.abs()));
+        let factor = match size {
+            s if s < 1e-100 => 2f64.powi(900),
+            s if s > 1e100 => 2f64.powi(-900),
+            _ => 1.0,
+        };
+        let large = |w: Point| w.map(|x| x * factor);
+        twice = add(twice, cross(large(u), large(v)));
     }
     twice
 }

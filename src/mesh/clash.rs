@@ -1,0 +1,153 @@
+//! Which triangles of a changing mesh meet where they share nothing: the
+//! exact tests of [`super::check()`] for those who mend meshes.
+
+use super::bvh::{Bvh, Cuboid};
+use super::frame::Frame;
+use super::intersect::{contact, Contact, Twins};
+use super::soup::place;
+use crate::context::{Cancelled, Context, Stage};
+use crate::geom::Point;
+use rayon::prelude::*;
+
+/// Exact signs for one set of points. Everything below takes points in the
+/// units of the frame, see [`Clash::new`].
+pub(crate) struct Clash {
+    frame: Frame,
+}
+
+/// Triangles in a tree, as they were when it was made.
+pub(crate) struct Tree {
+    bvh: Bvh,
+    /// The triangle in each slot.
+    listed: Vec<u32>,
+}
+
+/// The box of a triangle.
+pub(crate) struct Reach(Cuboid);
+
+impl Reach {
+    pub fn of(t: &[Point; 3]) -> Reach {
+        Reach(Cuboid::of(t))
+    }
+
+    pub fn meets(&self, other: &Reach) -> bool {
+        self.0.meets(&other.0)
+    }
+
+    pub fn join(&mut self, other: &Reach) {
+        for k in 0..3 {
+            self.0.min[k] = self.0.min[k].min(other.0.min[k]);
+            self.0.max[k] = self.0.max[k].max(other.0.max[k]);
+        }
+    }
+}
+
+impl Clash {
+    /// The frame of the given points, and the points in its units: a power of
+    /// two apart from those given.
+    pub fn new(points: &[Point]) -> (Clash, Vec<Point>) {
+        let mut frame = Frame::new(points);
+        let scaled = std::mem::take(&mut frame.points);
+        (Clash { frame }, scaled)
+    }
+
+    /// A point of the frame in the units of the points given.
+    pub fn leave(&self, p: Point) -> Point {
+        p.map(|x| self.frame.leave(x))
+    }
+
+    /// A point in the units of the points given, in those of the frame.
+    pub fn enter(&self, p: Point) -> Point {
+        self.frame.enter(p)
+    }
+
+    /// Whether a triangle has exactly no area.
+    pub fn is_flat(&self, t: &[Point; 3]) -> bool {
+        self.frame.kernel.projection(t).is_none()
+    }
+
+    /// Whether two triangles of positive area, given by vertices, meet in
+    /// anything but the vertices and the edge they share.
+    pub fn meet(&self, points: &[Point], a: [u32; 3], b: [u32; 3]) -> bool {
+        let (pa, pb) = (place(points, a), place(points, b));
+        let mut twins: Twins = [None; 3];
+        for (k, twin) in twins.iter_mut().enumerate() {
+            *twin = (0..3).find(|&j| pa[k] == pb[j]).map(|j| j as u8);
+        }
+        match contact(self.frame.kernel, &pa, &pb, &twins) {
+            Contact::Disjoint => false,
+            Contact::Crossing | Contact::Touching => true,
+            Contact::Shared => {
+                let at_one_place = twins.iter().flatten().count();
+                a.iter().filter(|v| b.contains(v)).count() != at_one_place
+            }
+        }
+    }
+
+    /// A tree of the triangles that are alive (first corner in range).
+    pub fn tree(&self, points: &[Point], triangles: &[[u32; 3]]) -> Tree {
+        let listed: Vec<u32> = (0..triangles.len() as u32)
+            .filter(|&t| (triangles[t as usize][0] as usize) < points.len())
+            .collect();
+        let boxes: Vec<Cuboid> = listed
+            .par_iter()
+            .map(|&t| Cuboid::of(&place(points, triangles[t as usize])))
+            .collect();
+        let bvh = Bvh::new(&boxes);
+        let listed = bvh.order.iter().map(|&k| listed[k as usize]).collect();
+        Tree { bvh, listed }
+    }
+
+    /// All pairs of triangles that meet so, and a triangle paired with itself
+    /// where it has no area; in order.
+    pub fn pairs(
+        &self,
+        tree: &Tree,
+        points: &[Point],
+        triangles: &[[u32; 3]],
+        cx: &Context,
+    ) -> Result<Vec<(u32, u32)>, Cancelled> {
+        let mut flat = vec![false; triangles.len()];
+        let mut found = Vec::new();
+        for (&t, is_flat) in tree.listed.iter().zip(self.flats(tree, points, triangles)) {
+            if is_flat {
+                flat[t as usize] = true;
+                found.push((t, t));
+            }
+        }
+        let by_slot: Vec<[u32; 3]> = (tree.listed.iter())
+            .map(|&t| triangles[t as usize])
+            .collect();
+        let parts = tree.bvh.self_join(
+            |part: &mut Vec<(u32, u32)>, i, j| {
+                let (s, t) = (tree.listed[i as usize], tree.listed[j as usize]);
+                if flat[s as usize] || flat[t as usize] {
+                    return;
+                }
+                if self.meet(points, by_slot[i as usize], by_slot[j as usize]) {
+                    part.push((s.min(t), s.max(t)));
+                }
+            },
+            |done, total| cx.advance(Stage::Crust, done, total),
+        )?;
+        found.extend(parts.into_iter().flatten());
+        found.sort_unstable();
+        Ok(found)
+    }
+
+    fn flats(&self, tree: &Tree, points: &[Point], triangles: &[[u32; 3]]) -> Vec<bool> {
+        (tree.listed.par_iter())
+            .map(|&t| self.is_flat(&place(points, triangles[t as usize])))
+            .collect()
+    }
+}
+
+impl Tree {
+    /// Calls `visit` with every triangle whose box met the given one when the
+    /// tree was made.
+    pub fn near(&self, reach: &Reach, mut visit: impl FnMut(u32)) {
+        let cuboid = &reach.0;
+        self.bvh
+            .query(cuboid, |slot| visit(self.listed[slot as usize]));
+    }
+}

@@ -1,0 +1,372 @@
+//! Mending one place after the other, every step proved.
+//!
+//! For a pair of triangles that meet where they must not, small changes near
+//! them are tried: to draw a vertex into a neighbour, to turn an edge, to move
+//! a vertex that is no sample. A change stays only if the triangles it touches
+//! then have fewer bad contacts than before, counted exactly against all
+//! triangles near, so their number falls with every change and the search
+//! ends. It widens from the pair to its neighbours, and in the end lets
+//! samples go that lie in a tangle nothing else undoes.
+
+use super::mend_coarsen::area;
+use super::mend_mesh::{prev, TriMesh};
+use super::raw::NONE;
+use crate::context::{Cancelled, Context, Stage};
+use crate::geom::vec3::{add, norm, scale, sub};
+use crate::geom::Point;
+use crate::mesh::clash::{Clash, Reach, Tree};
+
+/// How wide the search goes, in steps of escalation.
+const LEVELS: usize = 4;
+/// The tree is made anew when this many triangles changed since.
+const STALE: usize = 4096;
+
+/// What mending did.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Mended {
+    /// Pairs that met at the start.
+    pub found: usize,
+    /// Pairs that still meet.
+    pub left: usize,
+    /// Changes made.
+    pub changes: usize,
+    /// Samples that are no vertices any more.
+    pub samples_lost: usize,
+    pub rounds: usize,
+}
+
+/// A change that can be tried.
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    Collapse(u32),
+    Flip(u32),
+    Shift(u32, Point),
+}
+
+/// Mends `mesh`, whose bad pairs are `pairs`. `round` rounds a new position as
+/// the file will hold it. Tells the pairs that are left.
+pub(crate) fn mend(
+    mesh: &mut TriMesh,
+    clash: &Clash,
+    pairs: Vec<(u32, u32)>,
+    round: &dyn Fn(Point) -> Point,
+    cx: &Context,
+) -> Result<(Mended, Vec<(u32, u32)>), Cancelled> {
+    let mut done = Mended {
+        found: pairs.len(),
+        ..Mended::default()
+    };
+    if pairs.is_empty() {
+        return Ok((done, pairs));
+    }
+    let tree = clash.tree(&mesh.points, &mesh.tris);
+    let mut work = Work {
+        changed: vec![false; mesh.tris.len()],
+        changes: Vec::new(),
+        tree,
+        mesh,
+        clash,
+        round,
+        fan: Vec::new(),
+        near: Vec::new(),
+    };
+    let mut queue = pairs;
+    for level in 0..LEVELS {
+        done.rounds += 1;
+        let mut stuck = Vec::new();
+        // Last in, first out: what a change leaves is seen to at once.
+        queue.reverse();
+        let mut steps = 0u64;
+        while let Some((s, t)) = queue.pop() {
+            steps += 1;
+            if steps % 256 == 0 {
+                cx.advance(Stage::Crust, 2, 3)?;
+            }
+            if !work.bad(s, t) {
+                continue;
+            }
+            match work.improve(s, t, level, &mut done) {
+                Some(new) => {
+                    queue.push((s, t));
+                    queue.extend(new);
+                }
+                None => stuck.push((s, t)),
+            }
+            if work.changes.len() > STALE {
+                work.refresh();
+            }
+        }
+        stuck.sort_unstable();
+        stuck.dedup();
+        stuck.retain(|&(s, t)| work.bad(s, t));
+        queue = stuck;
+        if queue.is_empty() {
+            break;
+        }
+    }
+    done.left = queue.len();
+    Ok((done, queue))
+}
+
+struct Work<'a> {
+    mesh: &'a mut TriMesh,
+    clash: &'a Clash,
+    round: &'a dyn Fn(Point) -> Point,
+    tree: Tree,
+    /// Triangles that changed since the tree was made.
+    changed: Vec<bool>,
+    changes: Vec<u32>,
+    fan: Vec<u32>,
+    near: Vec<u32>,
+}
+
+impl Work<'_> {
+    fn refresh(&mut self) {
+        self.tree = self.clash.tree(&self.mesh.points, &self.mesh.tris);
+        for t in self.changes.drain(..) {
+            self.changed[t as usize] = false;
+        }
+    }
+
+    fn flat(&self, t: u32) -> bool {
+        self.clash.is_flat(&self.mesh.place(t))
+    }
+
+    /// Whether a pair is still to be mended; a triangle paired with itself
+    /// has no area.
+    fn bad(&self, s: u32, t: u32) -> bool {
+        let mesh = &*self.mesh;
+        if !mesh.alive(s) || !mesh.alive(t) {
+            return false;
+        }
+        if s == t {
+            return self.flat(s);
+        }
+        !self.flat(s)
+            && !self.flat(t)
+            && self
+                .clash
+                .meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
+    }
+
+    /// The bad pairs of which one is among `touched` (sorted).
+    fn count(&mut self, touched: &[u32], found: &mut Vec<(u32, u32)>) {
+        found.clear();
+        let mesh = &*self.mesh;
+        for &s in touched.iter().filter(|&&s| mesh.alive(s)) {
+            let place = mesh.place(s);
+            if self.clash.is_flat(&place) {
+                found.push((s, s));
+                continue;
+            }
+            let reach = Reach::of(&place);
+            self.near.clear();
+            let (near, changed) = (&mut self.near, &self.changed);
+            self.tree.near(&reach, |t| {
+                if !changed[t as usize] {
+                    near.push(t);
+                }
+            });
+            let list = self.near.iter().chain(&self.changes).chain(touched);
+            let first = found.len();
+            for &t in list {
+                if t == s || !mesh.alive(t) || touched.binary_search(&t).is_ok() && t < s {
+                    continue;
+                }
+                let place = mesh.place(t);
+                if reach.meets(&Reach::of(&place))
+                    && !self.clash.is_flat(&place)
+                    && self
+                        .clash
+                        .meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
+                {
+                    found.push((s.min(t), s.max(t)));
+                }
+            }
+            found[first..].sort_unstable();
+            let mut keep = first;
+            for k in first..found.len() {
+                if k == first || found[k] != found[k - 1] {
+                    found[keep] = found[k];
+                    keep += 1;
+                }
+            }
+            found.truncate(keep);
+        }
+    }
+
+    /// Makes the change that helps most; the bad pairs its triangles have
+    /// left, or `None` if none helps.
+    fn improve(
+        &mut self,
+        s: u32,
+        t: u32,
+        level: usize,
+        done: &mut Mended,
+    ) -> Option<Vec<(u32, u32)>> {
+        let changes = self.candidates(s, t, level);
+        let mut best: Option<(i64, f64, Change)> = None;
+        let (mut before, mut after) = (Vec::new(), Vec::new());
+        for change in changes {
+            let Some((touched, cost)) = self.touched(change) else {
+                continue;
+            };
+            self.count(&touched, &mut before);
+            if before.is_empty() {
+                continue;
+            }
+            self.mesh.begin();
+            self.apply(change);
+            self.count(&touched, &mut after);
+            self.mesh.take_back();
+            let gain = before.len() as i64 - after.len() as i64;
+            let rank = (gain, -cost);
+            if gain > 0 && best.is_none_or(|(g, c, _)| rank.0 > g || rank.0 == g && rank.1 > c) {
+                best = Some((rank.0, rank.1, change));
+            }
+        }
+        let (_, _, change) = best?;
+        let (touched, _) = self.touched(change)?;
+        if let Change::Collapse(h) = change {
+            let (from, to) = (self.mesh.tail(h), self.mesh.head(h));
+            let sample = self.mesh.samples[from as usize];
+            done.samples_lost +=
+                usize::from(sample != NONE && sample != self.mesh.samples[to as usize]);
+        }
+        self.apply(change);
+        done.changes += 1;
+        for &t in &touched {
+            if !std::mem::replace(&mut self.changed[t as usize], true) {
+                self.changes.push(t);
+            }
+        }
+        self.count(&touched, &mut after);
+        Some(after)
+    }
+
+    /// The triangles a change touches, sorted, and what it costs (the more
+    /// the worse); `None` if it cannot be made.
+    fn touched(&mut self, change: Change) -> Option<(Vec<u32>, f64)> {
+        let mut touched: Vec<u32>;
+        let cost;
+        match change {
+            Change::Collapse(h) => {
+                let (from, to) = (self.mesh.tail(h), self.mesh.head(h));
+                self.mesh.fan(from, &mut self.fan);
+                if !self.mesh.can_collapse(h, &self.fan) {
+                    return None;
+                }
+                touched = self.fan.iter().map(|h| h / 3).collect();
+                cost = norm(sub(self.mesh.at(from), self.mesh.at(to)));
+            }
+            Change::Flip(h) => {
+                if !self.mesh.can_flip(h) {
+                    return None;
+                }
+                let twin = self.mesh.twin(h);
+                let ends = [prev(h), prev(twin)].map(|g| self.mesh.at(self.mesh.tail(g)));
+                touched = vec![h / 3, twin / 3];
+                cost = norm(sub(ends[0], ends[1]));
+            }
+            Change::Shift(v, p) => {
+                self.mesh.fan(v, &mut self.fan);
+                touched = self.fan.iter().map(|h| h / 3).collect();
+                cost = 2.0 * norm(sub(self.mesh.at(v), p));
+            }
+        }
+        touched.sort_unstable();
+        touched.dedup();
+        Some((touched, cost))
+    }
+
+    fn apply(&mut self, change: Change) {
+        match change {
+            Change::Collapse(h) => {
+                let from = self.mesh.tail(h);
+                self.mesh.fan(from, &mut self.fan);
+                let fan = std::mem::take(&mut self.fan);
+                self.mesh.collapse(h, &fan);
+                self.fan = fan;
+            }
+            Change::Flip(h) => self.mesh.flip(h),
+            Change::Shift(v, p) => self.mesh.shift(v, p),
+        }
+    }
+
+    /// What to try, in an order of its own.
+    fn candidates(&mut self, s: u32, t: u32, level: usize) -> Vec<Change> {
+        let mesh = &*self.mesh;
+        let mut vertices: Vec<u32> = [s, t].iter().flat_map(|&t| mesh.tris[t as usize]).collect();
+        let mut fan = Vec::new();
+        let widen = |vertices: &mut Vec<u32>, fan: &mut Vec<u32>| {
+            for k in 0..vertices.len() {
+                mesh.fan(vertices[k], fan);
+                vertices.extend(fan.iter().map(|&h| mesh.head(h)));
+            }
+            vertices.sort_unstable();
+            vertices.dedup();
+        };
+        vertices.sort_unstable();
+        vertices.dedup();
+        for _ in 0..level.min(2) {
+            widen(&mut vertices, &mut fan);
+        }
+        let mut changes = Vec::new();
+        for &v in &vertices {
+            mesh.fan(v, &mut fan);
+            let free = mesh.samples[v as usize] == NONE;
+            let movable = mesh.movable[v as usize];
+            for &h in &fan {
+                if free || level == LEVELS - 1 || mesh.at(v) == mesh.at(mesh.head(h)) {
+                    changes.push(Change::Collapse(h));
+                }
+                if v < mesh.head(h) {
+                    changes.push(Change::Flip(h));
+                }
+            }
+            if movable {
+                self.shifts(v, &fan, level, &mut changes);
+            }
+        }
+        changes
+    }
+
+    /// Places where a vertex could go: toward the middle of its neighbours,
+    /// and to either side of its triangles.
+    fn shifts(&self, v: u32, fan: &[u32], level: usize, changes: &mut Vec<Change>) {
+        let mesh = &*self.mesh;
+        let p = mesh.at(v);
+        let share = 1.0 / fan.len() as f64;
+        let (mut middle, mut normal, mut height) = ([0.0; 3], [0.0; 3], f64::INFINITY);
+        for &h in fan {
+            middle = add(middle, scale(mesh.at(mesh.head(h)), share));
+            let (n, longest) = area(&mesh.place(h / 3));
+            normal = add(normal, n);
+            height = height.min(longest);
+        }
+        let mut push = |q: Point| {
+            let q = (self.round)(q);
+            if q != p {
+                changes.push(Change::Shift(v, q));
+            }
+        };
+        let toward = sub(middle, p);
+        let steps: &[f64] = if level == 0 {
+            &[1.0, 0.3]
+        } else {
+            &[1.0, 0.5, 0.2, 0.05, 0.01]
+        };
+        for &k in steps {
+            push(add(p, scale(toward, k)));
+        }
+        let size = norm(normal);
+        if size > 0.0 && height.is_finite() {
+            let reach = height.sqrt() / size;
+            for &k in steps {
+                for side in [-0.3, 0.3] {
+                    push(add(p, scale(normal, side * k * reach)));
+                }
+            }
+        }
+    }
+}

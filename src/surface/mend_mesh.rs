@@ -1,0 +1,367 @@
+//! Triangles that can be changed: the closed manifold that mending works on.
+//!
+//! Triangle `t` has the half-edges `3 t`, `3 t + 1`, `3 t + 2`, each starting
+//! at its corner; a half-edge knows its twin and a vertex one half-edge that
+//! starts there. Two operations change the mesh, [`TriMesh::collapse`] and
+//! [`TriMesh::flip`]; both keep it a closed manifold without double edges as
+//! long as their `can_` says so. All changes go through a journal while it is
+//! open, so that a change can be tried and taken back.
+
+use super::raw::{Crust, NONE};
+use crate::geom::Point;
+use crate::mesh::PolygonMesh;
+
+/// A closed triangle mesh under repair. Positions are those of a
+/// [`crate::mesh::clash::Clash`].
+pub(crate) struct TriMesh {
+    pub points: Vec<Point>,
+    /// The sample each vertex lies at, or [`NONE`].
+    pub samples: Vec<u32>,
+    /// The corners of each triangle; the first is [`NONE`] once it is gone.
+    pub tris: Vec<[u32; 3]>,
+    pub twin: Vec<u32>,
+    /// A half-edge that starts at the vertex, [`NONE`] once it is gone.
+    pub out: Vec<u32>,
+    /// The face each triangle comes from.
+    pub source: Vec<u32>,
+    /// Vertices that may move: those at no sample, and all but one of those
+    /// at the same.
+    pub movable: Vec<bool>,
+    journal: Vec<Change>,
+    recording: bool,
+}
+
+/// What was there before.
+enum Change {
+    Corner(u32, u32),
+    Twin(u32, u32),
+    Out(u32, u32),
+    Point(u32, Point),
+}
+
+#[inline]
+pub(crate) fn next(h: u32) -> u32 {
+    if h % 3 == 2 {
+        h - 2
+    } else {
+        h + 1
+    }
+}
+
+#[inline]
+pub(crate) fn prev(h: u32) -> u32 {
+    if h % 3 == 0 {
+        h + 2
+    } else {
+        h - 1
+    }
+}
+
+impl TriMesh {
+    /// The triangles of a crust, which must be closed and manifold, with
+    /// `points` for its positions.
+    pub fn new(crust: &Crust, points: Vec<Point>, source: Vec<u32>) -> TriMesh {
+        let mesh = &crust.mesh;
+        let tris: Vec<[u32; 3]> = (mesh.corners.chunks_exact(3))
+            .map(|t| [t[0], t[1], t[2]])
+            .collect();
+        let mut out = vec![NONE; points.len()];
+        for (h, &v) in mesh.corners.iter().enumerate() {
+            out[v as usize] = h as u32;
+        }
+        TriMesh {
+            twin: twins(&mesh.corners, points.len()),
+            points,
+            movable: crust.vertex_samples.iter().map(|&s| s == NONE).collect(),
+            samples: crust.vertex_samples.clone(),
+            tris,
+            out,
+            source,
+            journal: Vec::new(),
+            recording: false,
+        }
+    }
+
+    #[inline]
+    pub fn tail(&self, h: u32) -> u32 {
+        self.tris[h as usize / 3][h as usize % 3]
+    }
+
+    #[inline]
+    pub fn head(&self, h: u32) -> u32 {
+        self.tail(next(h))
+    }
+
+    #[inline]
+    pub fn twin(&self, h: u32) -> u32 {
+        self.twin[h as usize]
+    }
+
+    /// The next half-edge that starts at the same vertex.
+    #[inline]
+    pub fn around(&self, h: u32) -> u32 {
+        self.twin(prev(h))
+    }
+
+    #[inline]
+    pub fn alive(&self, t: u32) -> bool {
+        self.tris[t as usize][0] != NONE
+    }
+
+    #[inline]
+    pub fn at(&self, v: u32) -> Point {
+        self.points[v as usize]
+    }
+
+    /// The positions of a triangle's corners.
+    #[inline]
+    pub fn place(&self, t: u32) -> [Point; 3] {
+        self.tris[t as usize].map(|v| self.at(v))
+    }
+
+    /// The half-edges that start at `v`, counterclockwise... in the order of
+    /// `around`.
+    pub fn fan(&self, v: u32, into: &mut Vec<u32>) {
+        into.clear();
+        let first = self.out[v as usize];
+        if first == NONE {
+            return;
+        }
+        let mut h = first;
+        loop {
+            into.push(h);
+            h = self.around(h);
+            if h == first || into.len() > self.twin.len() {
+                break;
+            }
+        }
+    }
+
+    /// The half-edge from `a` to `b`, if there is one.
+    pub fn find(&self, a: u32, b: u32) -> Option<u32> {
+        let first = self.out[a as usize];
+        if first == NONE {
+            return None;
+        }
+        let mut h = first;
+        loop {
+            if self.head(h) == b {
+                return Some(h);
+            }
+            h = self.around(h);
+            if h == first {
+                return None;
+            }
+        }
+    }
+
+    /// Whether `v` has more than three edges.
+    fn has_many(&self, v: u32) -> bool {
+        let h = self.out[v as usize];
+        self.around(self.around(self.around(h))) != h
+    }
+
+    /// Whether the tail of `h`, whose half-edges are `fan`, can be drawn into
+    /// its head: they have two neighbours in common and no more (the link
+    /// condition), and those keep three edges.
+    pub fn can_collapse(&self, h: u32, fan: &[u32]) -> bool {
+        let (a, b) = (self.tail(prev(h)), self.tail(prev(self.twin(h))));
+        let to = self.head(h);
+        if a == b || !self.has_many(a) || !self.has_many(b) {
+            return false;
+        }
+        let mut common = 0;
+        let first = self.twin(h);
+        let mut g = self.around(first);
+        while g != first {
+            let end = self.head(g);
+            if end == to {
+                return false;
+            }
+            common += fan.iter().filter(|&&f| self.head(f) == end).count();
+            if common > 2 {
+                return false;
+            }
+            g = self.around(g);
+        }
+        common == 2 && fan.iter().filter(|&&f| self.head(f) == to).count() == 1
+    }
+
+    /// Draws the tail of `h` into its head; see [`Self::can_collapse`].
+    pub fn collapse(&mut self, h: u32, fan: &[u32]) {
+        let t = self.twin(h);
+        let (from, to) = (self.tail(h), self.head(h));
+        let (a, b) = (self.tail(prev(h)), self.tail(prev(t)));
+        for &g in fan {
+            self.set_corner(g, to);
+        }
+        let (x, y) = (self.twin(next(h)), self.twin(prev(h)));
+        let (p, q) = (self.twin(next(t)), self.twin(prev(t)));
+        self.pair(x, y);
+        self.pair(p, q);
+        // x runs a -> to, y to -> a; p runs b -> to (once from), q to -> b.
+        self.set_out(a, x);
+        self.set_out(to, y);
+        self.set_out(b, p);
+        self.set_out(from, NONE);
+        for dead in [h, t] {
+            for k in 0..3 {
+                self.set_corner(dead / 3 * 3 + k, NONE);
+            }
+        }
+    }
+
+    /// Whether the edge of `h` can be turned in its quadrilateral.
+    pub fn can_flip(&self, h: u32) -> bool {
+        let t = self.twin(h);
+        let (a, b) = (self.tail(prev(h)), self.tail(prev(t)));
+        a != b
+            && self.has_many(self.tail(h))
+            && self.has_many(self.head(h))
+            && self.find(a, b).is_none()
+    }
+
+    /// Turns the edge of `h`; afterwards `h` runs from the corner opposite
+    /// its twin to the corner that was opposite it.
+    pub fn flip(&mut self, h: u32) {
+        let t = self.twin(h);
+        // h: u -> v, next v -> a, prev a -> u; t: v -> u, next u -> b, prev b -> v.
+        let (va, au, ub, bv) = (next(h), prev(h), next(t), prev(t));
+        let (u, v, a, b) = (self.tail(h), self.tail(t), self.tail(au), self.tail(bv));
+        let outside = [va, au, ub, bv].map(|s| self.twin(s));
+        // h: b -> a, next a -> u, prev u -> b; t: a -> b, next b -> v, prev v -> a.
+        self.set_corner(h, b);
+        self.set_corner(va, a);
+        self.set_corner(au, u);
+        self.set_corner(t, a);
+        self.set_corner(ub, b);
+        self.set_corner(bv, v);
+        self.pair(va, outside[1]);
+        self.pair(au, outside[2]);
+        self.pair(ub, outside[3]);
+        self.pair(bv, outside[0]);
+        self.set_out(u, au);
+        self.set_out(v, bv);
+        self.set_out(a, va);
+        self.set_out(b, ub);
+    }
+
+    /// Lets these vertices move.
+    pub fn free(&mut self, vertices: &[u32]) {
+        for &v in vertices {
+            self.movable[v as usize] = true;
+        }
+    }
+
+    /// Moves a vertex.
+    pub fn shift(&mut self, v: u32, p: Point) {
+        if self.recording {
+            self.journal.push(Change::Point(v, self.at(v)));
+        }
+        self.points[v as usize] = p;
+    }
+
+    fn set_corner(&mut self, h: u32, v: u32) {
+        let corner = &mut self.tris[h as usize / 3][h as usize % 3];
+        if self.recording {
+            self.journal.push(Change::Corner(h, *corner));
+        }
+        *corner = v;
+    }
+
+    fn set_out(&mut self, v: u32, h: u32) {
+        if self.recording {
+            self.journal.push(Change::Out(v, self.out[v as usize]));
+        }
+        self.out[v as usize] = h;
+    }
+
+    fn pair(&mut self, a: u32, b: u32) {
+        for (x, y) in [(a, b), (b, a)] {
+            if self.recording {
+                self.journal.push(Change::Twin(x, self.twin[x as usize]));
+            }
+            self.twin[x as usize] = y;
+        }
+    }
+
+    /// From here on changes can be taken back.
+    pub fn begin(&mut self) {
+        self.journal.clear();
+        self.recording = true;
+    }
+
+    /// Keeps what was done since [`Self::begin`].
+    pub fn keep(&mut self) {
+        self.recording = false;
+    }
+
+    /// Takes back what was done since [`Self::begin`].
+    pub fn take_back(&mut self) {
+        self.recording = false;
+        while let Some(change) = self.journal.pop() {
+            match change {
+                Change::Corner(h, v) => self.tris[h as usize / 3][h as usize % 3] = v,
+                Change::Twin(h, t) => self.twin[h as usize] = t,
+                Change::Out(v, h) => self.out[v as usize] = h,
+                Change::Point(v, p) => self.points[v as usize] = p,
+            }
+        }
+    }
+
+    /// The crust, without what is gone; `leave` gives final positions and
+    /// `balls` those of the faces the triangles come from. Also the face each
+    /// triangle comes from.
+    pub fn finish(&self, balls: &[[u32; 2]], leave: impl Fn(Point) -> Point) -> (Crust, Vec<u32>) {
+        let mut number = vec![NONE; self.points.len()];
+        let mut crust = Crust {
+            mesh: PolygonMesh::with_vertices(Vec::new()),
+            ..Crust::default()
+        };
+        for (v, _) in self.out.iter().enumerate().filter(|(_, &h)| h != NONE) {
+            number[v] = crust.mesh.vertices.len() as u32;
+            crust.mesh.vertices.push(leave(self.points[v]));
+            crust.vertex_samples.push(self.samples[v]);
+        }
+        let mut source = Vec::new();
+        for (t, tri) in self.tris.iter().enumerate().filter(|(_, t)| t[0] != NONE) {
+            crust.mesh.push_face(&tri.map(|v| number[v as usize]));
+            let face = self.source[t];
+            let of = balls.get(face as usize);
+            crust.face_balls.push(of.copied().unwrap_or([NONE; 2]));
+            source.push(face);
+        }
+        (crust, source)
+    }
+}
+
+/// The half-edge that runs the other way, for each: buckets by lower end.
+fn twins(corners: &[u32], vertices: usize) -> Vec<u32> {
+    let end = |h: usize| corners[next(h as u32) as usize];
+    let low = |h: usize| corners[h].min(end(h)) as usize;
+    let mut first = vec![0u32; vertices + 2];
+    for h in 0..corners.len() {
+        first[low(h) + 2] += 1;
+    }
+    for v in 2..first.len() {
+        first[v] += first[v - 1];
+    }
+    let mut slots = vec![0u64; corners.len()];
+    for h in 0..corners.len() {
+        let slot = &mut first[low(h) + 1];
+        slots[*slot as usize] = u64::from(corners[h].max(end(h))) << 32 | h as u64;
+        *slot += 1;
+    }
+    let mut twin = vec![NONE; corners.len()];
+    for v in 0..vertices {
+        let bucket = &mut slots[first[v] as usize..first[v + 1] as usize];
+        bucket.sort_unstable();
+        for pair in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
+            if let [a, b] = *pair {
+                twin[a as u32 as usize] = b as u32;
+                twin[b as u32 as usize] = a as u32;
+            }
+        }
+    }
+    twin
+}
