@@ -29,17 +29,15 @@
 //! elsewhere (see the pipeline). That ends, for at the latest where no
 //! cell is inside no surface is left.
 
-use super::mend_coarsen::{area, coarsen, Coarsened};
-use super::mend_local::{mend, Mended};
+use super::mend_coarsen::{coarsen, Coarsened};
+use super::mend_local::mend;
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
+use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context};
 use crate::geom::Point;
 use crate::mesh::clash::Clash;
-
-/// Searches of all pairs, at most: one to find, the others to make sure.
-const SEARCHES: usize = 4;
 
 /// How to mend.
 pub struct MendOptions<'a> {
@@ -93,6 +91,7 @@ pub fn mend_crust(
         points.iter_mut().for_each(|p| *p = round(*p));
     }
     let mut mesh = TriMesh::new(crust, points, source);
+    let shells = Shells::of(&mesh);
     let mut done = Mending::default();
     if options.flatness > 0.0 {
         let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
@@ -104,37 +103,27 @@ pub fn mend_crust(
     let moved = draw_apart(&mut mesh, &round);
     done.drawn_apart = moved.len();
     mesh.free(&moved);
-    for search in 0..SEARCHES {
-        let tree = clash.tree(&mesh.points, &mesh.tris);
-        let mut pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
-        drop(tree);
-        pairs.extend(lost_areas(&mesh));
-        pairs.sort_unstable();
-        pairs.dedup();
-        if search == 0 {
-            done.found = pairs.len();
+    let tree = clash.tree(&mesh.points, &mesh.tris);
+    let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
+    done.found = pairs.len();
+    let (first, mut left) = mend(&mut mesh, &clash, tree, pairs, 0.0, &round, cx)?;
+    if left.is_empty() {
+        let least = least_area(&mesh);
+        let pairs = thin(&mesh, least);
+        if !pairs.is_empty() {
+            let tree = clash.tree(&mesh.points, &mesh.tris);
+            let (second, mut rest) = mend(&mut mesh, &clash, tree, pairs, least, &round, cx)?;
+            // What is no worse than thin may stay.
+            rest.retain(|&(s, t)| s != t || clash.is_flat(&mesh.place(s)));
+            left = rest;
+            done.changes += second.changes;
         }
-        done.left.clear();
-        if pairs.is_empty() {
-            break;
-        }
-        let (
-            Mended {
-                changes,
-                samples_lost,
-                rounds,
-                ..
-            },
-            left,
-        ) = mend(&mut mesh, &clash, pairs, &round, cx)?;
-        done.changes += changes;
-        done.samples_lost += samples_lost;
-        done.rounds += rounds;
-        done.left = left.iter().map(|&(s, t)| [s, t]).collect();
-        if changes == 0 {
-            break;
-        }
+        done.samples_lost += shells.take_out_reversed(&mut mesh, &clash);
     }
+    done.changes += first.changes;
+    done.samples_lost += first.samples_lost;
+    done.rounds = first.rounds;
+    done.left = left.iter().map(|&(s, t)| [s, t]).collect();
     // The triangles left are told by the faces they come from.
     for pair in &mut done.left {
         *pair = pair.map(|t| mesh.source[t as usize]);
@@ -175,11 +164,4 @@ fn spread(mesh: &TriMesh, spacing: impl Fn(u32) -> f64) -> Vec<f64> {
         .filter(|l| !l.is_finite())
         .for_each(|l| *l = 0.0);
     known
-}
-
-/// Triangles so thin that sums of products of coordinates about the middle,
-/// as others compute areas, can come out as zero; paired with themselves.
-fn lost_areas(_mesh: &TriMesh) -> Vec<(u32, u32)> {
-    let _ = area;
-    Vec::new()
 }

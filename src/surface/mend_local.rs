@@ -10,6 +10,7 @@
 
 use super::mend_coarsen::area;
 use super::mend_mesh::{prev, TriMesh};
+use super::mend_shell::is_thin;
 use super::raw::NONE;
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::{add, norm, scale, sub};
@@ -24,10 +25,6 @@ const STALE: usize = 4096;
 /// What mending did.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Mended {
-    /// Pairs that met at the start.
-    pub found: usize,
-    /// Pairs that still meet.
-    pub left: usize,
     /// Changes made.
     pub changes: usize,
     /// Samples that are no vertices any more.
@@ -43,35 +40,38 @@ enum Change {
     Shift(u32, Point),
 }
 
-/// Mends `mesh`, whose bad pairs are `pairs`. `round` rounds a new position as
-/// the file will hold it. Tells the pairs that are left.
+/// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles. `round` rounds a new position as
+/// the file will hold it. Triangles count as bad whose vector area is not
+/// above `thin`; with 0 those that have exactly none. Tells the pairs that are
+/// left.
 pub(crate) fn mend(
     mesh: &mut TriMesh,
     clash: &Clash,
+    tree: Tree,
     pairs: Vec<(u32, u32)>,
+    thin: f64,
     round: &dyn Fn(Point) -> Point,
     cx: &Context,
 ) -> Result<(Mended, Vec<(u32, u32)>), Cancelled> {
-    let mut done = Mended {
-        found: pairs.len(),
-        ..Mended::default()
-    };
+    let mut done = Mended::default();
     if pairs.is_empty() {
         return Ok((done, pairs));
     }
-    let tree = clash.tree(&mesh.points, &mesh.tris);
     let mut work = Work {
         changed: vec![false; mesh.tris.len()],
         changes: Vec::new(),
         tree,
         mesh,
         clash,
+        thin,
         round,
         fan: Vec::new(),
         near: Vec::new(),
     };
     let mut queue = pairs;
-    for level in 0..LEVELS {
+    // Samples do not go for a thin triangle.
+    let levels = if thin > 0.0 { LEVELS - 1 } else { LEVELS };
+    for level in 0..levels {
         done.rounds += 1;
         let mut stuck = Vec::new();
         // Last in, first out: what a change leaves is seen to at once.
@@ -104,13 +104,13 @@ pub(crate) fn mend(
             break;
         }
     }
-    done.left = queue.len();
     Ok((done, queue))
 }
 
 struct Work<'a> {
     mesh: &'a mut TriMesh,
     clash: &'a Clash,
+    thin: f64,
     round: &'a dyn Fn(Point) -> Point,
     tree: Tree,
     /// Triangles that changed since the tree was made.
@@ -140,7 +140,7 @@ impl Work<'_> {
             return false;
         }
         if s == t {
-            return self.flat(s);
+            return self.flat(s) || is_thin(&mesh.place(s), self.thin);
         }
         !self.flat(s)
             && !self.flat(t)
@@ -159,6 +159,10 @@ impl Work<'_> {
                 found.push((s, s));
                 continue;
             }
+            let first = found.len();
+            if self.thin > 0.0 && is_thin(&place, self.thin) {
+                found.push((s, s));
+            }
             let reach = Reach::of(&place);
             self.near.clear();
             let (near, changed) = (&mut self.near, &self.changed);
@@ -168,7 +172,6 @@ impl Work<'_> {
                 }
             });
             let list = self.near.iter().chain(&self.changes).chain(touched);
-            let first = found.len();
             for &t in list {
                 if t == s || !mesh.alive(t) || touched.binary_search(&t).is_ok() && t < s {
                     continue;

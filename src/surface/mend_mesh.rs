@@ -291,11 +291,6 @@ impl TriMesh {
         self.recording = true;
     }
 
-    /// Keeps what was done since [`Self::begin`].
-    pub fn keep(&mut self) {
-        self.recording = false;
-    }
-
     /// Takes back what was done since [`Self::begin`].
     pub fn take_back(&mut self) {
         self.recording = false;

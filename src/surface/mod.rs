@@ -13,6 +13,7 @@ mod mend_coarsen;
 mod mend_local;
 mod mend_mesh;
 mod mend_pinch;
+mod mend_shell;
 mod pinch;
 mod polygon;
 #[cfg(test)]
