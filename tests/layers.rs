@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The rows, top first, and why each stands where it does.
-const ROWS: [(&[&str], &str); 13] = [
+const ROWS: [(&[&str], &str); 12] = [
     (
         &["geom", "context"],
         "plain values, and what every long call receives",
@@ -15,8 +15,9 @@ const ROWS: [(&[&str], &str); 13] = [
         "what any stage may return; it knows cancellation, no stage",
     ),
     (
-        &["predicates", "mesh"],
-        "signs of determinants of sites; meshes and what can be asked of them",
+        &["predicates", "mesh", "options"],
+        "signs of determinants of sites; meshes and what can be asked of them; \
+         what the user may say, and errors about it",
     ),
     (
         &["tetra"],
@@ -34,12 +35,15 @@ const ROWS: [(&[&str], &str); 13] = [
         "sides of poles by the diagram; fewer poles by the samples. Neither \
          needs the other",
     ),
-    (&["options"], "what the user may say, and errors about it"),
     (
         &["stats"],
-        "what a run did, the options among it; the last stage fills in its part",
+        "what a run did: options, energies, counts of predicates",
     ),
-    (&["surface"], "labelled cells become faces"),
+    (
+        &["surface"],
+        "labelled cells become faces; its last step (surface::stage) reads \
+         options and writes stats",
+    ),
     (&["pipeline"], "the stages in order"),
     (
         &["io"],

@@ -12,6 +12,8 @@
 //! On noisy input many samples lie off any good surface: there the step is
 //! left out ([`MOST_UNHELD`]).
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use super::Labels;
@@ -21,6 +23,8 @@ use crate::error::Error;
 use crate::geom::Side;
 use crate::poles::{Balls, Candidates};
 use crate::power::PowerDiagram;
+use crate::predicates::Site;
+use crate::tetra::NONE;
 
 /// Share of unheld samples beyond which they are taken for noise.
 pub const MOST_UNHELD: f64 = 0.05;
@@ -39,6 +43,9 @@ pub struct Held {
 
 /// Adds balls for samples that are off the crust. With `most` the share of
 /// the samples up to which this is done.
+///
+/// # Errors
+/// Those of [`PowerDiagram::extend`].
 pub fn hold(
     delaunay: &Delaunay,
     balls: &mut Balls,
@@ -59,14 +66,23 @@ pub fn hold(
     let candidates = Candidates::of(delaunay, &unheld, balls.lattice);
     let start = power.complex.cell_at_vertex(power.sites.len());
     let one_touching = one_ball_each(balls, &unheld);
+    // No two balls of a diagram have one centre.
+    let mut centres: Vec<&Site> = balls.sites.iter().collect();
+    centres.par_sort_unstable_by(|a, b| by_centre(a, b));
+    let taken = |site: &Site| centres.binary_search_by(|c| by_centre(c, site)).is_ok();
     let chosen: Vec<Option<(usize, Side)>> = (0..unheld.len())
         .into_par_iter()
         .map(|k| {
             let at = one_touching[k];
             let wanted = labels.sides[at as usize].opposite();
-            let hint = start[at as usize];
+            // A hidden ball has no cell to start from.
+            let hint = match start[at as usize] {
+                NONE => 0,
+                cell => cell,
+            };
             candidates
                 .at(k)
+                .filter(|&c| !taken(candidates.site(c)))
                 .filter(|&c| {
                     let owner = power.owner(candidates.site(c), hint);
                     let side = match owner {
@@ -93,6 +109,11 @@ pub fn hold(
     power.extend(&balls.sites[from..], context)?;
     labels.sides.extend(sides);
     Ok(held)
+}
+
+/// The order of sites by centre alone.
+fn by_centre(a: &Site, b: &Site) -> Ordering {
+    (0..3).fold(Ordering::Equal, |o, k| o.then(a[k].total_cmp(&b[k])))
 }
 
 /// Samples touched by balls, all of one label.

@@ -94,7 +94,11 @@ impl Balls {
     }
 }
 
-/// Makes balls of the chosen cells: equal centres are one ball.
+/// The place of a cell's centre along the curve, the centre, the cell.
+type Keyed = (u64, Point, u32);
+
+/// Makes balls of the chosen cells: equal centres are one ball, which touches
+/// the samples of all cells with that centre, chosen or not.
 pub(super) fn gather(
     delaunay: &Delaunay,
     centres: &[Point],
@@ -109,18 +113,26 @@ pub(super) fn gather(
     }
     // Order along the curve by centre; equal centres end up side by side.
     let half = crate::predicates::LIMIT / 2.0;
-    let mut keyed: Vec<(u64, Point, u32)> = (0..centres.len() as u32)
+    let key = |c: u32| -> Keyed {
+        let p = centres[c as usize];
+        (order::key(&[p[0], p[1], p[2], 0.0], half / 2.0), p, c)
+    };
+    let place =
+        |a: &Keyed, b: &Keyed| (0..3).fold(a.0.cmp(&b.0), |o, k| o.then(a.1[k].total_cmp(&b.1[k])));
+    let cells = 0..centres.len() as u32;
+    let (chosen_cells, others): (Vec<u32>, Vec<u32>) = cells.partition(|&c| used[c as usize]);
+    let mut keyed: Vec<Keyed> = chosen_cells.into_par_iter().map(key).collect();
+    keyed.par_sort_unstable_by(|a, b| place(a, b).then(a.2.cmp(&b.2)));
+    let same_centre = |c: &Keyed| keyed.binary_search_by(|k| place(k, c)).is_ok();
+    let more: Vec<Keyed> = others
         .into_par_iter()
-        .filter(|&c| used[c as usize])
-        .map(|c| {
-            let p = centres[c as usize];
-            (order::key(&[p[0], p[1], p[2], 0.0], half / 2.0), p, c)
-        })
+        .map(key)
+        .filter(same_centre)
         .collect();
-    keyed.par_sort_unstable_by(|a, b| {
-        let place = (0..3).fold(a.0.cmp(&b.0), |o, k| o.then(a.1[k].total_cmp(&b.1[k])));
-        place.then(a.2.cmp(&b.2))
-    });
+    if !more.is_empty() {
+        keyed.extend(more);
+        keyed.par_sort_unstable_by(|a, b| place(a, b).then(a.2.cmp(&b.2)));
+    }
     let mut firsts: Vec<u32> = Vec::new();
     for k in 0..keyed.len() {
         if k == 0 || keyed[k].1 != keyed[k - 1].1 {

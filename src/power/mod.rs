@@ -84,7 +84,12 @@ impl PowerDiagram {
         (!self.is_sentinel(best)).then_some(best)
     }
 
-    /// Inserts more balls: they get the ids after the present ones.
+    /// Inserts more balls: they get the ids after the present ones. The rules
+    /// of [`power_diagram`] hold for all of them together.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] and [`Error::Cancelled`]; the diagram has lost its
+    /// cells then.
     pub fn extend(&mut self, balls: &[Site], context: &Context) -> Result<(), Error> {
         if balls.is_empty() {
             return Ok(());

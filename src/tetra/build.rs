@@ -56,6 +56,9 @@ fn grow<C: Conflict>(
 }
 
 /// Inserts the sites `more` of `test` into a complex of other sites of it.
+///
+/// # Errors
+/// Those of [`triangulate`].
 pub fn extend<C: Conflict>(
     test: &C,
     complex: Complex,

@@ -128,8 +128,8 @@ pub fn check<C: Conflict>(complex: &Complex, hidden: &[u32], test: &C) -> Vec<Fi
         // The walk ends in triangulations that pass all of the above.
         let mut hint = 0;
         for &site in hidden {
-            let place = &test.sites()[site as usize];
-            hint = locate(complex, test.sites(), place, hint, &mut counts);
+            let at = &test.sites()[site as usize];
+            hint = locate(complex, test.sites(), at, hint, &mut counts);
             if test.conflicts(complex.cells[hint as usize], site, &mut counts) {
                 found.push(Finding::WronglyHidden { site, cell: hint });
             }

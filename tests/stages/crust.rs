@@ -56,7 +56,7 @@ fn euler(raw: &RawCrust) -> i64 {
 
 /// A closed 2-manifold, whatever the labels.
 #[track_caller]
-fn assert_closed(name: &str, run: &Run, sides: &[Side], raw: &RawCrust) {
+pub fn assert_closed(name: &str, run: &Run, sides: &[Side], raw: &RawCrust) {
     let n = raw.corners.len();
     assert_eq!(raw.twins.len(), n, "{name}");
     assert_eq!(raw.starts.len(), raw.balls.len() + 1, "{name}");

@@ -6,6 +6,7 @@ mod common;
 
 mod crust;
 mod exact;
+mod hold;
 mod labels;
 mod merge;
 mod poles;

@@ -26,7 +26,7 @@ fn clouds() -> Vec<(&'static str, Vec<Point>)> {
 fn no_share_changes_nothing() {
     for (name, points) in clouds() {
         let run = Run::of(&points, 0.0);
-        let same = merge_redundant(&run.samples, &run.delaunay, run.poles.clone(), 0.0).0;
+        let (same, _) = merge_redundant(&run.samples, &run.delaunay, run.poles.clone(), 0.0);
         assert!(same.balls.sites == run.poles.balls.sites, "{name}");
         assert!(same.balls.touched == run.poles.balls.touched, "{name}");
         assert!(same.of_sample == run.poles.of_sample, "{name}");
@@ -63,6 +63,7 @@ fn balls_that_stay_stand_for_those_that_go() {
             let few = run.balls.len();
             assert!(few <= fewest, "{name}: {few} balls at {share}");
             fewest = few;
+            assert!(run.spacing == spacing, "{name}: spacing");
             let step = run.step();
             for s in 0..run.samples.len() {
                 for k in 0..2 {

@@ -92,6 +92,34 @@ fn no_sample_lies_inside_a_polar_ball() {
     }
 }
 
+/// Cells with one centre are one ball, whether they are poles or not: in a
+/// grid eight samples share it.
+#[test]
+fn balls_touch_the_samples_of_all_cells_with_their_centre() {
+    for (name, points) in clouds() {
+        let run = Run::of(&points, 0.0);
+        let step = run.step();
+        for (cell, centre) in run
+            .delaunay
+            .complex
+            .cells
+            .iter()
+            .zip(voronoi_vertices(&run))
+        {
+            let centre = centre.map(|v| (v / step).round_ties_even() * step);
+            let Some(b) = run.balls.iter().position(|b| b.centre == centre) else {
+                continue;
+            };
+            for v in cell {
+                let touches = run.poles.balls.touching(b as u32).contains(v);
+                let frame = run.delaunay.is_frame(*v);
+                assert!(touches || frame, "{name}: ball {b}, sample {v}");
+                assert!(!frame || run.poles.balls.touches_frame[b], "{name}: {b}");
+            }
+        }
+    }
+}
+
 /// Fact F3: hardly a ball is hidden, and only by rounding.
 #[test]
 fn polar_balls_have_cells() {

@@ -11,6 +11,8 @@ use powercrust::{Ball, Context, Point, Side};
 pub struct Run {
     pub samples: Samples,
     pub delaunay: Delaunay,
+    /// The spacing at each sample, in lattice steps.
+    pub spacing: Vec<f64>,
     pub poles: Poles,
     /// The balls in steps of the samples' lattice.
     pub balls: Vec<Ball>,
@@ -26,12 +28,10 @@ impl Run {
         let samples = samples(points, 5.0).unwrap();
         let delaunay = delaunay(&samples, &context).unwrap();
         let poles = poles(&samples, &delaunay, &PoleOptions::default(), &context).unwrap();
-        let poles = merge_redundant(&samples, &delaunay, poles, merge).0;
+        let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, merge);
         let step = poles.balls.lattice.step();
         let power = power_diagram(&poles.balls.sites, step, &context).unwrap();
-        let balls: Vec<Ball> = (0..poles.balls.len() as u32)
-            .map(|b| on_lattice(&poles, b))
-            .collect();
+        let balls = poles.balls.on_lattice();
         let at: Vec<Point> = samples.sites.iter().map(position).collect();
         let opposites = opposites(&poles.of_sample, &at, &balls);
         let neighbours = Neighbours::of(&power);
@@ -44,6 +44,7 @@ impl Run {
         Run {
             samples,
             delaunay,
+            spacing,
             poles,
             balls,
             power,
@@ -79,9 +80,4 @@ impl Run {
 
 pub fn position(site: &[f64; 4]) -> Point {
     [site[0], site[1], site[2]]
-}
-
-fn on_lattice(poles: &Poles, b: u32) -> Ball {
-    let (site, step) = (poles.balls.sites[b as usize], poles.balls.lattice.step());
-    Ball::new(position(&site).map(|v| v * step), site[3].sqrt() * step)
 }
