@@ -44,8 +44,8 @@ use crate::mesh::clash::Clash;
 /// The surface never moves by more than this share of the spacing, nor of the
 /// radius of the balls beside it.
 const MOST: f64 = 0.05;
-/// Moves by this share of the spacing are none.
-const NOTHING: f64 = 1e-6;
+/// Moves by this share of the spacing count for nothing.
+const NOTHING: f64 = 0.004;
 
 /// How to mend.
 pub struct MendOptions<'a> {
