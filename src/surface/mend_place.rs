@@ -11,6 +11,7 @@
 //! normals around agree: at edges of the solid the power vertices are what
 //! extends the faces to the edge, and they stay.
 
+use super::mend_coarsen::area;
 use super::mend_mesh::TriMesh;
 use super::raw::NONE;
 use crate::geom::vec3::{add, dist_sq, dot, norm, scale, sub};
@@ -66,6 +67,37 @@ pub(crate) fn settle(
         mesh.shift(v, p);
     }
     moves.len()
+}
+
+/// Takes vertices that are no samples a hair off the plane of their triangles,
+/// by about `share` of the length at each. Power faces are plane to the last
+/// bit, and pieces of one face that share nothing are then told apart by
+/// rounding alone in tests that are not exact (MeshLab's finds crossings).
+pub(crate) fn unlevel(
+    mesh: &mut TriMesh,
+    share: f64,
+    length: &[f64],
+    round: &dyn Fn(Point) -> Point,
+) {
+    let mut sums = vec![[0.0; 3]; mesh.points.len()];
+    for t in (0..mesh.tris.len() as u32).filter(|&t| mesh.alive(t)) {
+        let (n, _) = area(&mesh.place(t));
+        for v in mesh.tris[t as usize] {
+            let sum = &mut sums[v as usize];
+            *sum = add(*sum, n);
+        }
+    }
+    for (v, &sum) in sums.iter().enumerate() {
+        if mesh.out[v] == NONE || mesh.samples[v] != NONE {
+            continue;
+        }
+        // In [0.5, 1), up or down.
+        let h = (v as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let size = 0.5 + (h >> 12) as f64 / (1u64 << 53) as f64;
+        let size = if h & 1 == 0 { size } else { -size };
+        let p = add(mesh.points[v], scale(unit(sum), size * share * length[v]));
+        mesh.shift(v as u32, round(p));
+    }
 }
 
 /// What is known of the surface at the vertices.
