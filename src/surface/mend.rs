@@ -33,7 +33,7 @@ use super::mend_coarsen::{coarsen, Coarsened};
 use super::mend_local::mend;
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
-use super::mend_place::settle;
+use super::mend_place::{settle, unlevel};
 use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context};
@@ -44,8 +44,11 @@ use crate::mesh::clash::Clash;
 /// The surface never moves by more than this share of the spacing, nor of the
 /// radius of the balls beside it.
 const MOST: f64 = 0.05;
-/// Moves by this share of the spacing are none.
-const NOTHING: f64 = 1e-6;
+/// Moves by this share of the spacing count for nothing.
+const NOTHING: f64 = 0.004;
+
+/// Power vertices leave the planes of their faces by this share of the spacing.
+const UNLEVEL: f64 = 1e-6;
 
 /// How to mend.
 pub struct MendOptions<'a> {
@@ -130,6 +133,7 @@ pub fn mend_crust(
             .collect();
         let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
+        unlevel(&mut mesh, UNLEVEL, &spacing, &round);
     }
     let moved = draw_apart(&mut mesh, &round);
     done.drawn_apart = moved.len();

@@ -16,6 +16,7 @@ use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::{add, norm, scale, sub};
 use crate::geom::Point;
 use crate::mesh::clash::{Clash, Reach, Tree};
+use std::collections::BTreeSet;
 
 /// How wide the search goes, in steps of escalation.
 const LEVELS: usize = 4;
@@ -67,7 +68,9 @@ pub(crate) fn mend(
         round,
         fan: Vec::new(),
         near: Vec::new(),
+        known: BTreeSet::new(),
     };
+    work.learn(&pairs);
     let mut queue = pairs;
     // Samples do not go for a thin triangle.
     let levels = if thin > 0.0 { LEVELS - 1 } else { LEVELS };
@@ -118,6 +121,8 @@ struct Work<'a> {
     changes: Vec<u32>,
     fan: Vec<u32>,
     near: Vec<u32>,
+    /// All bad pairs there are, both ways round.
+    known: BTreeSet<(u32, u32)>,
 }
 
 impl Work<'_> {
@@ -149,11 +154,31 @@ impl Work<'_> {
                 .meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
     }
 
-    /// The bad pairs of which one is among `touched` (sorted).
-    fn count(&mut self, touched: &[u32], found: &mut Vec<(u32, u32)>) {
+    fn learn(&mut self, pairs: &[(u32, u32)]) {
+        for &(s, t) in pairs {
+            self.known.extend([(s, t), (t, s)]);
+        }
+    }
+
+    /// The number of bad pairs known of which one is among `touched` (sorted).
+    fn known(&self, touched: &[u32]) -> usize {
+        let of = |&s: &u32| {
+            let pairs = self.known.range((s, 0)..=(s, u32::MAX));
+            let once = |&&(_, t): &&(u32, u32)| t >= s || touched.binary_search(&t).is_err();
+            pairs.filter(once).count()
+        };
+        touched.iter().map(of).sum()
+    }
+
+    /// The bad pairs of which one is among `touched` (sorted); gives up when
+    /// there are `most`.
+    fn count(&mut self, touched: &[u32], most: usize, found: &mut Vec<(u32, u32)>) {
         found.clear();
         let mesh = &*self.mesh;
         for &s in touched.iter().filter(|&&s| mesh.alive(s)) {
+            if found.len() >= most {
+                return;
+            }
             let place = mesh.place(s);
             if self.clash.is_flat(&place) {
                 found.push((s, s));
@@ -207,29 +232,33 @@ impl Work<'_> {
         level: usize,
         done: &mut Mended,
     ) -> Option<Vec<(u32, u32)>> {
-        let changes = self.candidates(s, t, level);
-        let mut best: Option<(i64, f64, Change)> = None;
-        let (mut before, mut after) = (Vec::new(), Vec::new());
-        for change in changes {
-            let Some((touched, cost)) = self.touched(change) else {
-                continue;
-            };
-            self.count(&touched, &mut before);
-            if before.is_empty() {
-                continue;
-            }
-            self.mesh.begin();
-            self.apply(change);
-            self.count(&touched, &mut after);
-            self.mesh.take_back();
-            let gain = before.len() as i64 - after.len() as i64;
-            let rank = (gain, -cost);
-            if gain > 0 && best.is_none_or(|(g, c, _)| rank.0 > g || rank.0 == g && rank.1 > c) {
-                best = Some((rank.0, rank.1, change));
+        let mut changes: Vec<(f64, Change, Vec<u32>, usize)> = Vec::new();
+        for change in self.candidates(s, t, level) {
+            if let Some((touched, cost)) = self.touched(change) {
+                let before = self.known(&touched);
+                if before > 0 {
+                    changes.push((cost, change, touched, before));
+                }
             }
         }
-        let (_, _, change) = best?;
-        let (touched, _) = self.touched(change)?;
+        changes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best: Option<(usize, usize)> = None;
+        let mut after = Vec::new();
+        for (k, (_, change, touched, before)) in changes.iter().enumerate() {
+            self.mesh.begin();
+            self.apply(*change);
+            self.count(touched, *before, &mut after);
+            self.mesh.take_back();
+            let gain = before.saturating_sub(after.len());
+            if gain > best.map_or(0, |(g, _)| g) {
+                best = Some((gain, k));
+            }
+            // The cheapest that leaves nothing behind will do.
+            if after.is_empty() {
+                break;
+            }
+        }
+        let (_, change, touched, _) = changes.swap_remove(best?.1);
         if let Change::Collapse(h) = change {
             let (from, to) = (self.mesh.tail(h), self.mesh.head(h));
             let sample = self.mesh.samples[from as usize];
@@ -243,7 +272,15 @@ impl Work<'_> {
                 self.changes.push(t);
             }
         }
-        self.count(&touched, &mut after);
+        self.count(&touched, usize::MAX, &mut after);
+        for &s in &touched {
+            let pairs = self.known.range((s, 0)..=(s, u32::MAX));
+            for (s, t) in pairs.copied().collect::<Vec<_>>() {
+                self.known.remove(&(s, t));
+                self.known.remove(&(t, s));
+            }
+        }
+        self.learn(&after);
         Some(after)
     }
 

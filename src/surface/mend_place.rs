@@ -11,10 +11,12 @@
 //! normals around agree: at edges of the solid the power vertices are what
 //! extends the faces to the edge, and they stay.
 
+use super::mend_coarsen::area;
 use super::mend_mesh::TriMesh;
 use super::raw::NONE;
 use crate::geom::vec3::{add, dist_sq, dot, norm, scale, sub};
 use crate::geom::Point;
+use rayon::prelude::*;
 
 /// The least cosine between normals that agree.
 const AGREE: f64 = 0.9;
@@ -23,11 +25,14 @@ const AGREE: f64 = 0.9;
 /// direction across each triangle. Returns how many moved.
 pub(crate) fn settle(
     mesh: &mut TriMesh,
-    outward: &dyn Fn(u32) -> Option<Point>,
+    outward: &(dyn Fn(u32) -> Option<Point> + Sync),
     limit: &[f64],
     round: &dyn Fn(Point) -> Point,
 ) -> usize {
-    let across: Vec<Option<Point>> = (0..mesh.tris.len() as u32).map(outward).collect();
+    let across: Vec<Option<Point>> = (0..mesh.tris.len() as u32)
+        .into_par_iter()
+        .map(outward)
+        .collect();
     let mut sums = vec![[0.0; 3]; mesh.points.len()];
     for (tri, n) in mesh.tris.iter().zip(&across) {
         for &v in tri {
@@ -43,51 +48,115 @@ pub(crate) fn settle(
             smooth[v as usize] &= agrees;
         }
     }
-    let (mut fan, mut near, mut moves) = (Vec::new(), Vec::new(), Vec::new());
-    for v in 0..mesh.points.len() as u32 {
-        if mesh.samples[v as usize] != NONE || !smooth[v as usize] {
+    let known = Known {
+        mesh,
+        normals: &normals,
+        smooth: &smooth,
+    };
+    let moves: Vec<(u32, Point)> = (0..mesh.points.len() as u32)
+        .into_par_iter()
+        .map_init(<(Vec<u32>, Vec<u32>)>::default, |(fan, near), v| {
+            let (off, normal) = known.off(v, fan, near)?;
+            let q = sub(mesh.at(v), scale(normal, off));
+            (off.abs() <= limit[v as usize]).then_some((v, q))
+        })
+        .flatten()
+        .collect();
+    let moves: Vec<(u32, Point)> = moves.into_iter().map(|(v, p)| (v, round(p))).collect();
+    for &(v, p) in &moves {
+        mesh.shift(v, p);
+    }
+    moves.len()
+}
+
+/// Takes vertices that are no samples a hair off the plane of their triangles,
+/// by about `share` of the length at each. Power faces are plane to the last
+/// bit, and pieces of one face that share nothing are then told apart by
+/// rounding alone in tests that are not exact (MeshLab's finds crossings).
+pub(crate) fn unlevel(
+    mesh: &mut TriMesh,
+    share: f64,
+    length: &[f64],
+    round: &dyn Fn(Point) -> Point,
+) {
+    let mut sums = vec![[0.0; 3]; mesh.points.len()];
+    for t in (0..mesh.tris.len() as u32).filter(|&t| mesh.alive(t)) {
+        let (n, _) = area(&mesh.place(t));
+        for v in mesh.tris[t as usize] {
+            let sum = &mut sums[v as usize];
+            *sum = add(*sum, n);
+        }
+    }
+    for (v, &sum) in sums.iter().enumerate() {
+        if mesh.out[v] == NONE || mesh.samples[v] != NONE {
             continue;
         }
+        // In [0.5, 1), up or down.
+        let h = (v as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let size = 0.5 + (h >> 12) as f64 / (1u64 << 53) as f64;
+        let size = if h & 1 == 0 { size } else { -size };
+        let p = add(mesh.points[v], scale(unit(sum), size * share * length[v]));
+        mesh.shift(v as u32, round(p));
+    }
+}
+
+/// What is known of the surface at the vertices.
+struct Known<'a> {
+    mesh: &'a TriMesh,
+    normals: &'a [Point],
+    smooth: &'a [bool],
+}
+
+impl Known<'_> {
+    /// How far off the surface vertex `v` lies along the normal there; `None`
+    /// for samples and where the normals around do not agree.
+    fn off(&self, v: u32, fan: &mut Vec<u32>, near: &mut Vec<u32>) -> Option<(f64, Point)> {
+        let Known {
+            mesh,
+            normals,
+            smooth,
+        } = *self;
+        if mesh.samples[v as usize] != NONE || !smooth[v as usize] {
+            return None;
+        }
         near.clear();
-        mesh.fan(v, &mut fan);
+        mesh.fan(v, fan);
         near.extend(fan.iter().map(|&h| mesh.head(h)));
+        let agree =
+            |w: u32| smooth[w as usize] && dot(normals[w as usize], normals[v as usize]) >= AGREE;
+        if !near.iter().all(|&w| agree(w)) {
+            return None;
+        }
         for k in 0..near.len() {
             if mesh.samples[near[k] as usize] == NONE {
-                mesh.fan(near[k], &mut fan);
+                mesh.fan(near[k], fan);
                 near.extend(fan.iter().map(|&h| mesh.head(h)));
             }
         }
         near.sort_unstable();
         near.dedup();
-        let all = near
-            .iter()
-            .all(|&w| smooth[w as usize] && dot(normals[w as usize], normals[v as usize]) >= AGREE);
+        if !near.iter().all(|&w| agree(w)) {
+            return None;
+        }
         near.retain(|&w| mesh.samples[w as usize] != NONE);
-        if !all || near.len() < 3 {
-            continue;
+        if near.len() < 3 {
+            return None;
         }
         let p = mesh.at(v);
         let weight = |w: u32| 1.0 / dist_sq(p, mesh.at(w)).max(f64::MIN_POSITIVE);
         let mut normal = [0.0; 3];
-        for &w in &near {
+        for &w in near.iter() {
             normal = add(normal, scale(normals[w as usize], weight(w)));
         }
         let normal = unit(normal);
         let (mut off, mut weights) = (0.0, 0.0);
-        for &w in &near {
+        for &w in near.iter() {
             let both = add(normal, normals[w as usize]);
             off += weight(w) * dot(sub(p, mesh.at(w)), both) / 2.0;
             weights += weight(w);
         }
-        off /= weights;
-        if off.abs() <= limit[v as usize] {
-            moves.push((v, round(sub(p, scale(normal, off)))));
-        }
+        Some((off / weights, normal))
     }
-    for &(v, p) in &moves {
-        mesh.shift(v, p);
-    }
-    moves.len()
 }
 
 fn unit(v: Point) -> Point {

@@ -112,7 +112,7 @@ impl Shells {
 /// middle of the mesh can come out as zero: others compute areas so.
 pub(crate) fn least_area(mesh: &TriMesh) -> f64 {
     let reach = reach(mesh);
-    4e-16 * reach * reach
+    2e-15 * reach * reach
 }
 
 /// The largest coordinate about the middle of the mesh.
