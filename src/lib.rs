@@ -7,6 +7,7 @@ pub mod error;
 pub mod geom;
 pub mod io;
 pub mod label;
+pub mod memory;
 pub mod mesh;
 pub mod options;
 pub mod pipeline;

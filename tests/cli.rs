@@ -643,13 +643,13 @@ fn crossing_faces_are_counted_on_request() {
     assert!(!plain.stderr.contains("cross"));
     assert_eq!(plain.json()["mesh"]["closed"], true);
     let checked = place
-        .run("torus.xyz -o crust.ply --json --check")
+        .run("torus.xyz -o crust.ply --json --verify")
         .code(DONE);
     let crossing = &checked.json()["mesh"]["crossing"];
     let judged = place.run("check crust.ply --json").json();
     assert_eq!(*crossing, judged["counts"]["crossing"]);
     assert_eq!(checked.json()["mesh"]["sound"], judged["ok"]);
-    checked.says(" cross");
+    checked.says("verified");
 }
 
 #[test]

@@ -236,11 +236,23 @@ pub struct Reconstruct {
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub stats: Option<PathBuf>,
 
-    /// Look for crossing faces in the mesh made, and say how many there are.
+    /// Judge the mesh as it will be written, crossing faces included; if
+    /// anything is wrong, say what, write nothing and exit with 1.
     ///
-    /// That it is closed, manifold and oriented is always looked at.
+    /// That it is closed and manifold is always looked at. `powercrust check`
+    /// judges files.
     #[arg(long, help_heading = REPORTING)]
-    pub check: bool,
+    pub verify: bool,
+
+    /// Read the points, say how much memory and time the run would take, and
+    /// do no more.
+    #[arg(long, help_heading = REPORTING)]
+    pub dry_run: bool,
+
+    /// Refuse to start (exit code 1) where the run is likely to need more
+    /// memory than this: 800M, 2G.
+    #[arg(long, value_name = "SIZE", value_parser = wanted::size, help_heading = REPORTING)]
+    pub max_memory: Option<u64>,
 
     /// Print a summary of the run as one JSON object on standard output,
     /// errors included.

@@ -89,6 +89,15 @@ fn describe(path: &Path, report: &Report, sound: bool) -> String {
     }
     lines.push(size.join(", "));
     lines.push(format!("volume {}, area {}", report.volume, report.area));
+    lines.extend(faults_in_words(report));
+    let mut text = lines.join("\n  ");
+    text.push('\n');
+    text
+}
+
+/// What is wrong with a mesh, a line for each kind of fault.
+pub fn faults_in_words(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
     if report.faces == 0 {
         lines.push("no faces".to_owned());
     }
@@ -102,14 +111,12 @@ fn describe(path: &Path, report: &Report, sound: bool) -> String {
             let place = first.map(|f| format!(", first: {}", place(f)));
             lines.push(format!(
                 "{}{}",
-                number(count, what.0, what.1),
+                counted(count as usize, what.0, what.1),
                 place.unwrap_or_default()
             ));
         }
     }
-    let mut text = lines.join("\n  ");
-    text.push('\n');
-    text
+    lines
 }
 
 type Fault = (u64, (&'static str, &'static str), fn(&Finding) -> bool);

@@ -44,8 +44,12 @@ pub struct Plan {
     pub poles: Option<Out<()>>,
     pub stats: Option<Out<()>>,
     pub json: bool,
-    /// Look for crossing faces too.
-    pub check: bool,
+    /// Judge the mesh as written; write it only if it is sound.
+    pub verify: bool,
+    /// Only say what the run would take.
+    pub dry_run: bool,
+    /// The most memory the run may be likely to need, in bytes.
+    pub max_memory: Option<u64>,
     pub talk: Talk,
     /// What was decided for the user, for `-v`.
     pub decisions: Vec<String>,
@@ -76,7 +80,7 @@ impl Plan {
             &args.poles,
             &args.stats,
         ];
-        if !args.json && results.iter().all(|path| path.is_none()) {
+        if !args.json && !args.dry_run && results.iter().all(|path| path.is_none()) {
             return Err(
                 Failure::usage("nowhere to write the mesh: -o is missing").hint(suggestion(&input))
             );
@@ -111,7 +115,9 @@ impl Plan {
             fewer: (args.faces.map(|n| Fewer::Faces(n as usize))).or(args.reduce.map(Fewer::OneIn)),
             attributes: args.attributes.clone().unwrap_or_default(),
             json: args.json,
-            check: args.check,
+            verify: args.verify,
+            dry_run: args.dry_run,
+            max_memory: args.max_memory,
             talk: Talk::new(args.quiet, args.verbose),
             decisions,
         };

@@ -6,7 +6,8 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use powercrust::io::{self as format, CloudFormat, MeshFormat, ReadError, WriteError};
+use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
+use powercrust::memory::{estimate, Estimate};
 use powercrust::{Bounds, Context, Error, Options, Point, Reconstruction, SampleError};
 use serde_json::json;
 
@@ -48,6 +49,31 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         format_args!("options {}", json!(plan.options)),
     );
 
+    let estimate = estimate(cloud.points.len());
+    plan.talk.at(
+        Talk::Verbose,
+        format_args!("this will take {}", in_words(&estimate)),
+    );
+    if let Some(limit) = plan
+        .max_memory
+        .filter(|&limit| estimate.memory_bytes > limit)
+    {
+        return Err(Failure::new(
+            Code::Unfit,
+            format!(
+                "{}: this would take {}, more than --max-memory {}",
+                name(&plan.input),
+                in_words(&estimate),
+                bytes(limit)
+            ),
+        )
+        .hint("thin the points out, or allow more"));
+    }
+    if plan.dry_run {
+        tell_estimate(plan, &cloud, &estimate)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+
     let bar = Bar::new(plan.talk);
     let context = Context {
         threads: plan.threads,
@@ -82,9 +108,65 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         );
     }
 
+    report.verdict(plan)?;
     write_results(plan, &result, &product, &report)?;
     report.tell(plan, start);
     Ok(ExitCode::SUCCESS)
+}
+
+/// The answer to `--dry-run`.
+fn tell_estimate(plan: &Plan, cloud: &Cloud, estimate: &Estimate) -> Result<(), Failure> {
+    let text = if plan.json {
+        let object = json!({
+            "ok": true,
+            "dry_run": true,
+            "input": { "file": name(&plan.input), "read": cloud.report },
+            "points": cloud.points.len(),
+            "estimate": estimate,
+        });
+        format!("{object:#}\n")
+    } else {
+        format!(
+            "{}: {}: {}\n",
+            name(&plan.input),
+            counted(cloud.points.len(), "point", "points"),
+            in_words(estimate)
+        )
+    };
+    Target::Stdout.stage(|out| out.write_all(text.as_bytes()))?;
+    Ok(())
+}
+
+fn in_words(estimate: &Estimate) -> String {
+    let seconds = estimate.seconds;
+    let time = match seconds {
+        s if s < 1.0 => "a second".to_owned(),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} minutes", s / 60.0),
+        s => format!("{:.0} hours", s / 3600.0),
+    };
+    format!(
+        "about {} of memory and {time}",
+        bytes(estimate.memory_bytes)
+    )
+}
+
+/// `1.5 GiB`.
+fn bytes(count: u64) -> String {
+    let count = count as f64;
+    match [("GiB", 30), ("MiB", 20), ("KiB", 10)]
+        .into_iter()
+        .find(|&(_, power)| count >= 2f64.powi(power))
+    {
+        Some((unit, power)) => {
+            let number = count / 2f64.powi(power);
+            match number < 10.0 {
+                true => format!("{number:.1} {unit}"),
+                false => format!("{number:.0} {unit}"),
+            }
+        }
+        None => format!("{count:.0} bytes"),
+    }
 }
 
 /// Whether the mesh file holds 32-bit coordinates, so that the surface must
