@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 /// The rows, top first, and why each stands where it does.
 const ROWS: [(&[&str], &str); 12] = [
     (
-        &["geom", "context"],
-        "plain values, and what every long call receives",
+        &["geom", "context", "memory"],
+        "plain values, what every long call receives, what the system tells",
     ),
     (
         &["error"],
@@ -45,6 +45,10 @@ const ROWS: [(&[&str], &str); 12] = [
          options and writes stats",
     ),
     (&["pipeline"], "the stages in order"),
+    (
+        &["attributes"],
+        "what a result's vertices and faces inherit from points and balls",
+    ),
     (
         &["io"],
         "files of what goes in and comes out, polar balls too",

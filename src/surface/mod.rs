@@ -1,7 +1,6 @@
 //! From labelled power cells to the surface (section 5 of the paper, steps 5
 //! and 6): the crust between inner and outer cells, and the power shape.
 
-pub mod attributes;
 #[cfg(test)]
 mod check;
 mod clean;
@@ -29,7 +28,7 @@ pub(crate) mod stage;
 mod tests;
 mod triangulate;
 mod unfold;
-pub use attributes::VertexSources;
+
 pub use clean::{clean, CleanOptions};
 pub use components::{filter_shells, Keep, MinVolume, Selection, ShellFilter, Shells};
 pub use extract::{raw_crust, Placement};
