@@ -1,6 +1,7 @@
 //! Watertight surfaces and medial axes from point clouds by the power crust
 //! (Amenta, Choi and Kolluri 2001).
 
+pub mod attributes;
 pub mod context;
 pub mod delaunay;
 pub mod error;

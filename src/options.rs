@@ -22,9 +22,14 @@ pub struct Options {
     pub merge: f64,
     /// Polygons as the power diagram has them, or triangles.
     pub faces: Faces,
+    /// Whether the surface must pass through every sample, as far as balls
+    /// can be found that make it. `None`: unless so many samples are off it
+    /// that they must be noise, or `sharp` says otherwise.
+    pub interpolate: Option<bool>,
     /// How far the surface may move to lose a vertex that is no sample, as a
-    /// share of the local spacing of the samples; in [0, 1]. With 0 the faces
-    /// are those of the power diagram, but for what must be mended.
+    /// share of the sampling error `h² / 2r`, `h` the local spacing and `r` the
+    /// radius of the ball beside it; in [0, 10]. With 0 the faces are those of
+    /// the power diagram, but for what must be mended.
     pub flatness: f64,
     /// Round coordinates to single precision, as files of it hold them, and
     /// make sure of the surface on those.
@@ -49,8 +54,9 @@ impl Default for Options {
             deep_angle: 113.578_178_478_201_83,
             box_factor: 5.0,
             merge: 0.5,
+            interpolate: None,
             faces: Faces::Triangles,
-            flatness: 0.05,
+            flatness: 0.35,
             single: false,
         }
     }
@@ -96,7 +102,7 @@ impl Options {
         within("box_factor", self.box_factor, ok, "a number in [2, 100]")?;
         let ok = (0.0..=1.0).contains(&self.merge);
         within("merge", self.merge, ok, "a number in [0, 1]")?;
-        let ok = (0.0..=1.0).contains(&self.flatness);
-        within("flatness", self.flatness, ok, "a number in [0, 1]")
+        let ok = (0.0..=10.0).contains(&self.flatness);
+        within("flatness", self.flatness, ok, "a number in [0, 10]")
     }
 }

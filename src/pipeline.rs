@@ -6,7 +6,9 @@ use crate::context::{Context, Stage};
 use crate::delaunay::{delaunay, samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
-use crate::label::{energy, label, opposites, refine, Evidence, LabelOptions, Neighbours};
+use crate::label::{
+    energy, hold, label, opposites, refine, Evidence, LabelOptions, Neighbours, MOST_UNHELD,
+};
 use crate::options::Options;
 use crate::poles::{poles, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
@@ -101,26 +103,20 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.skinny_samples = poles.skinny_samples;
     stats.poles_dropped = poles.dropped;
     stats.poles = poles.balls.len();
-    let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge);
-    drop(delaunay);
+    let (mut poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge);
     stats.balls = poles.balls.len();
     clock.lap(Stage::Poles, &mut stats);
 
     // 3. Power diagram.
     let step = poles.balls.lattice.step();
-    let power = power_diagram(&poles.balls.sites, step, context)?;
+    let mut power = power_diagram(&poles.balls.sites, step, context)?;
     stats.power_cells = power.complex.len();
     stats.hidden_balls = power.hidden.len();
     stats.power_predicates = power.counts;
     clock.lap(Stage::Power, &mut stats);
 
     // 4. Labels, by the geometry on the lattice: no overflow at any scale.
-    let on_lattice: Vec<Ball> = poles
-        .balls
-        .sites
-        .iter()
-        .map(|s| Ball::new([s[0] * step, s[1] * step, s[2] * step], s[3].sqrt() * step))
-        .collect();
+    let on_lattice = poles.balls.on_lattice();
     let sites: Vec<Point> = samples.sites.iter().map(|s| [s[0], s[1], s[2]]).collect();
     let pairs = opposites(&poles.of_sample, &sites, &on_lattice);
     let evidence = Evidence {
@@ -137,8 +133,17 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
     stats.unreached_balls = labels.unreached;
     stats.label_energy = energy(&evidence, &neighbours, &labels.sides, &how);
-    stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();
     drop(neighbours);
+    let most = match (options.sharp, options.interpolate) {
+        (_, Some(true)) => 1.0,
+        (_, Some(false)) | (true, None) => 0.0,
+        (false, None) => MOST_UNHELD,
+    };
+    let balls = &mut poles.balls;
+    stats.held = hold(&delaunay, balls, &mut power, &mut labels, most, context)?;
+    drop(delaunay);
+    let on_lattice = balls.on_lattice();
+    stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();
     clock.lap(Stage::Labels, &mut stats);
 
     // 5. Crust.

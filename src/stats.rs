@@ -1,6 +1,6 @@
 //! Counts, timings and options of one run: the content of `--stats`.
 
-use crate::label::Energy;
+use crate::label::{Energy, Held};
 use crate::options::Options;
 use crate::predicates::Counts;
 
@@ -29,6 +29,8 @@ pub struct Stats {
     pub inner_balls: usize,
     /// Balls that no evidence reached.
     pub unreached_balls: u32,
+    /// Samples that were off the crust and the balls added for them.
+    pub held: Held,
     /// Cells of the regular triangulation, sentinels included.
     pub power_cells: usize,
     /// Power faces between inner and outer cells, before clean-up.
@@ -91,6 +93,7 @@ impl Stats {
             hidden_balls: 0,
             inner_balls: 0,
             unreached_balls: 0,
+            held: Held::default(),
             power_cells: 0,
             power_faces: 0,
             polygons: 0,

@@ -553,8 +553,8 @@ fn pairs_of_triangles_agree_with_rational_clipping() {
         // Small cubes of integers give every degenerate position often; a
         // flat one gives coplanar pairs.
         let range = [2, 3, 4, 7][(random.next() % 4) as usize];
-        let flat = random.next() % 4 == 0;
-        let skew = random.next() % 2 == 0;
+        let flat = random.next().is_multiple_of(4);
+        let skew = random.next().is_multiple_of(2);
         let mut point = || -> [i32; 3] {
             let mut p: [i32; 3] = std::array::from_fn(|_| (random.next() % range) as i32);
             if flat {
@@ -566,7 +566,7 @@ fn pairs_of_triangles_agree_with_rational_clipping() {
         let mut b = [point(), point(), point()];
         // Often make them share corners.
         for i in 0..2 {
-            if random.next() % 4 == 0 {
+            if random.next().is_multiple_of(4) {
                 b[(random.next() % 3) as usize] = a[i];
             }
         }

@@ -6,14 +6,17 @@
 //! outer balls of a plate grow without bound; the cube bounds every ball by
 //! about twice its own size, and it has all the symmetries of the lattice.
 
+mod check;
 mod samples;
 mod voronoi;
 
+pub use check::{check, Finding};
 pub(crate) use samples::times_power;
 pub use samples::{samples, Lattice, Samples};
-pub use voronoi::{circumcentre, Centre};
+pub use voronoi::{circumcentre, rounded_circumcentre, Centre};
 
-use crate::context::{Cancelled, Context, Stage};
+use crate::context::{Context, Stage};
+use crate::error::Error;
 use crate::predicates::{Counts, Site};
 use crate::tetra::{triangulate, Complex, InSphere};
 
@@ -40,7 +43,21 @@ impl Delaunay {
 }
 
 /// Triangulates the samples.
-pub fn delaunay(samples: &Samples, context: &Context) -> Result<Delaunay, Cancelled> {
+///
+/// # Errors
+/// [`Error::TooLarge`] and [`Error::Cancelled`].
+///
+/// ```
+/// use powercrust::{delaunay, Context};
+/// let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let samples = delaunay::samples(&points, 5.0)?;
+/// let delaunay = delaunay::delaunay(&samples, &Context::default())?;
+/// let of_samples = |cell: &&[u32; 4]| cell.iter().all(|&v| !delaunay.is_frame(v));
+/// assert_eq!(delaunay.complex.cells.iter().filter(of_samples).count(), 1);
+/// assert_eq!(delaunay::check(&delaunay), []);
+/// # Ok::<(), powercrust::Error>(())
+/// ```
+pub fn delaunay(samples: &Samples, context: &Context) -> Result<Delaunay, Error> {
     let mut sites = samples.sites.clone();
     sites.extend(corners(samples.lattice.frame_half));
     let count = samples.sites.len() as u32;

@@ -7,6 +7,8 @@
 //! of 1e-300 look alike to it. Points that meet on one lattice point are one
 //! sample. Output coordinates of samples are the given ones, bit for bit.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use crate::error::SampleError;
@@ -14,14 +16,17 @@ use crate::geom::{Bounds, Point};
 use crate::predicates::{orient, Counts, Sign, Site};
 use crate::tetra::order;
 
-/// log2 of the frame's half-side: lattice coordinates of samples and frame
-/// stay below it, centres of balls and sentinels below
-/// [`crate::predicates::LIMIT`].
-const FRAME_BITS: f64 = 43.321_928_094_887_36; // 41 + log2(5)
+/// Largest half-side of the frame: lattice coordinates of samples and frame
+/// stay within it, centres of balls below half [`crate::predicates::LIMIT`].
+const FRAME_HALF: f64 = 10_995_116_277_760.0; // 5 * 2^41
 
 /// Samples closer to a common plane or line than this many lattice steps are
-/// taken to lie on it.
+/// taken to lie on it. Far off the origin, a few steps between floats are
+/// added, up to `FLAT_SHARE` of the cloud: a tilted plane there is one only
+/// but for the rounding of its points.
 const FLAT: f64 = 8.0;
+const FLAT_ULPS: f64 = 4.0;
+const FLAT_SHARE: f64 = 0.001;
 
 /// The map between the user's coordinates and the lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +89,9 @@ pub struct Samples {
     pub points: Vec<Point>,
     /// Its lattice site.
     pub sites: Vec<Site>,
-    /// The first input point at this place.
+    /// The input point it stands for: of those at its place the first, in
+    /// lexicographic order of coordinates where these differ by less than the
+    /// lattice shows.
     pub source: Vec<u32>,
     /// How many input points it stands for.
     pub multiplicity: Vec<u32>,
@@ -141,7 +148,13 @@ pub fn samples(points: &[Point], box_factor: f64) -> Result<Samples, SampleError
         .collect();
     let along_curve = |a: &(u64, u32, Site), b: &(u64, u32, Site)| {
         let by_place = (0..3).fold(a.0.cmp(&b.0), |o, k| o.then(a.2[k].total_cmp(&b.2[k])));
-        by_place.then_with(|| a.1.cmp(&b.1))
+        let given = |at: u32| &points[at as usize];
+        let by_coordinates = || {
+            (0..3).fold(Ordering::Equal, |o, k| {
+                o.then(given(a.1)[k].total_cmp(&given(b.1)[k]))
+            })
+        };
+        by_place.then_with(by_coordinates).then(a.1.cmp(&b.1))
     };
     keyed.par_sort_unstable_by(along_curve);
 
@@ -186,7 +199,7 @@ pub fn samples(points: &[Point], box_factor: f64) -> Result<Samples, SampleError
         made.source.push(keyed[from].1);
         made.multiplicity.push((to - from) as u32);
     }
-    spans_space(&made.sites, given)?;
+    spans_space(&made, given)?;
     Ok(made)
 }
 
@@ -199,23 +212,28 @@ fn lattice(points: &[Point], box_factor: f64) -> Result<Lattice, SampleError> {
             distinct: 0,
         });
     };
-    let halves = [0, 1, 2].map(|k| bounds.max[k] / 2.0 - bounds.min[k] / 2.0);
-    let half = halves[0].max(halves[1]).max(halves[2]);
+    // The centre is rounded: where a step between floats is as large as the
+    // cloud, it may be a corner of the box.
+    let centre = [0, 1, 2].map(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0);
+    let half = (0..3).fold(0.0f64, |half, k| {
+        half.max(bounds.max[k] - centre[k])
+            .max(centre[k] - bounds.min[k])
+    });
     // The difference of two coordinates must itself be finite.
-    const WIDEST: f64 = 1e307;
-    if half > WIDEST {
+    const WIDEST: f64 = 2e307;
+    if half > WIDEST / 2.0 {
         return Err(SampleError::TooWide {
-            extent: half,
+            extent: 2.0 * half,
             limit: WIDEST,
         });
     }
-    let bits = (FRAME_BITS - box_factor.log2()).floor() as i32;
+    let bits = exponent(FRAME_HALF / box_factor);
     // `half` in [2^(e-1), 2^e); zero when all points are one.
     let e = if half > 0.0 { exponent(half) + 1 } else { 0 };
     let exponent = (bits - e).min(2000);
     let sample_half = times_power(half, exponent).ceil().max(1.0);
     Ok(Lattice {
-        centre: [0, 1, 2].map(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0),
+        centre,
         exponent,
         frame_half: (sample_half * box_factor).ceil(),
         sample_half,
@@ -232,9 +250,13 @@ fn exponent(v: f64) -> i32 {
 }
 
 /// Refuses samples on one line or in one plane, exactly or to within
-/// [`FLAT`] lattice steps.
-fn spans_space(sites: &[Site], given: usize) -> Result<(), SampleError> {
+/// [`FLAT`] lattice steps and the rounding of the input.
+fn spans_space(samples: &Samples, given: usize) -> Result<(), SampleError> {
     use crate::geom::vec3::{cross, dist_sq, dot, norm, sub};
+    let (sites, lattice) = (&samples.sites, &samples.lattice);
+    let largest = lattice.centre.map(f64::abs).into_iter().fold(0.0, f64::max);
+    let rounding = times_power(largest * f64::EPSILON, lattice.exponent) * FLAT_ULPS;
+    let tolerance = FLAT + rounding.min(lattice.sample_half * FLAT_SHARE);
     let at = |s: &Site| [s[0], s[1], s[2]];
     let farthest = |measure: &dyn Fn(Point) -> f64| {
         let mut best = (0usize, -1.0);
@@ -251,13 +273,13 @@ fn spans_space(sites: &[Site], given: usize) -> Result<(), SampleError> {
     let b = at(&sites[far]);
     let along = sub(b, a);
     let (off, area) = farthest(&|p| norm(cross(sub(p, a), along)));
-    if area <= FLAT * norm(along) {
+    if area <= tolerance * norm(along) {
         return Err(SampleError::Collinear { given });
     }
     let c = at(&sites[off]);
     let normal = cross(along, sub(c, a));
     let (above, volume) = farthest(&|p| dot(sub(p, a), normal).abs());
-    let flat = volume <= FLAT * norm(normal);
+    let flat = volume <= tolerance * norm(normal);
     let mut counts = Counts::default();
     let corners = [&sites[0], &sites[far], &sites[off], &sites[above]];
     let exact = orient(corners[0], corners[1], corners[2], corners[3], &mut counts);

@@ -33,6 +33,24 @@ pub fn circumcentre(sites: [&Site; 4], tolerance: f64) -> Centre {
     }
 }
 
+/// The circumcentre rounded to multiples of `step`. Where the error of the
+/// floats could change the outcome the integers decide, so it is the same
+/// however the axes are permuted or mirrored.
+pub fn rounded_circumcentre(sites: [&Site; 4], step: f64) -> Point {
+    let round = |v: f64| (v / step).round_ties_even() * step + 0.0;
+    let quick = in_floats(sites);
+    let sure = quick.error.is_finite()
+        && quick
+            .position
+            .iter()
+            .all(|&v| round(v - quick.error) == round(v + quick.error));
+    if sure {
+        quick.position.map(round)
+    } else {
+        in_integers(sites).position.map(round)
+    }
+}
+
 fn rows(sites: [&Site; 4]) -> ([Point; 3], [f64; 3], [f64; 3]) {
     let a = sites[0];
     let mut rows = [[0.0; 3]; 3];

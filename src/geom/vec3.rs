@@ -20,10 +20,13 @@ pub fn scale(a: Point, k: f64) -> Point {
     [a[0] * k, a[1] * k, a[2] * k]
 }
 
-/// The dot product.
+/// The dot product, the same to the last bit however the axes are permuted
+/// or mirrored: the products are added from the smallest up.
 #[inline]
 pub fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    let (x, y, z) = (a[0] * b[0], a[1] * b[1], a[2] * b[2]);
+    let (low, high) = (x.min(y), x.max(y));
+    (low.min(z) + high.min(low.max(z))) + high.max(z)
 }
 
 /// The cross product.

@@ -136,8 +136,7 @@ pub fn as_written(format: MeshFormat, vertices: &[Point], options: &WriteOptions
 /// Writes a medial axis.
 ///
 /// `.ma` and OBJ hold no tetrahedra; OBJ holds no radii either. Radii are
-/// written, not their squares, so reading back may change the last digit of
-/// [`crate::Ball::radius_sq`].
+/// written as they are.
 ///
 /// # Errors
 /// As [`write_mesh`].

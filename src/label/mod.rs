@@ -9,11 +9,15 @@
 //! Equal priorities are told apart by ball id, which is itself a function of
 //! the geometry; so the labels depend on neither threads nor hashing.
 
+mod check;
 mod energy;
+mod hold;
 mod propagate;
 mod refine;
 
+pub use check::{check, Finding};
 pub use energy::{energy, Energy};
+pub use hold::{hold, Held, MOST_UNHELD};
 pub use propagate::label;
 pub use refine::refine;
 

@@ -19,6 +19,28 @@ use crate::context::{Cancelled, Context, Stage};
 use crate::geom::Side;
 
 /// Labels every ball.
+///
+/// # Errors
+/// [`Cancelled`].
+///
+/// ```
+/// use powercrust::label::{label, Evidence, LabelOptions, Neighbours, Opposite};
+/// use powercrust::{power, Ball, Context, Side};
+/// // A ball at the frame, its opposite, and a ball deep inside the opposite.
+/// let sites = [[0.0, 0.0, 90.0, 1600.0], [0.0, 0.0, 0.0, 2500.0], [3.0, 0.0, 0.0, 2500.0]];
+/// let balls = sites.map(|s| Ball::new([s[0], s[1], s[2]], s[3].sqrt()));
+/// let diagram = power::power_diagram(&sites, 1024.0, &Context::default())?;
+/// let opposites = [Opposite { poles: [0, 1], weight: 1.0 }];
+/// let evidence = Evidence {
+///     balls: &balls,
+///     outer: &[true, false, false],
+///     opposites: &opposites,
+/// };
+/// let neighbours = Neighbours::of(&diagram);
+/// let labels = label(&evidence, &neighbours, &LabelOptions::default(), &Context::default())?;
+/// assert_eq!(labels.sides, [Side::Outer, Side::Inner, Side::Inner]);
+/// # Ok::<(), powercrust::Error>(())
+/// ```
 pub fn label(
     evidence: &Evidence,
     neighbours: &Neighbours,

@@ -177,7 +177,7 @@ fn judge(
         enter_crossings(&faces, found, &mut ledger);
         if apart == 0 && shells.len() > 1 {
             let closed: Vec<bool> = shells.iter().map(|s| s.closed).collect();
-            depths = Some(nesting::depths(&field, &topology, &closed));
+            depths = Some(nesting::depths(&field, &topology.shell, &closed));
         }
     }
     inside_out(&shells, volume, depths, &mut ledger);

@@ -2,9 +2,11 @@
 //! exact tests of [`super::check()`] for those who mend meshes.
 
 use super::bvh::{Bvh, Cuboid};
+use super::crossing::Field;
 use super::frame::Frame;
 use super::intersect::{contact, Contact, Twins};
-use super::soup::place;
+use super::nesting;
+use super::soup::{place, Triangles};
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::Point;
 use rayon::prelude::*;
@@ -32,13 +34,6 @@ impl Reach {
 
     pub fn meets(&self, other: &Reach) -> bool {
         self.0.meets(&other.0)
-    }
-
-    pub fn join(&mut self, other: &Reach) {
-        for k in 0..3 {
-            self.0.min[k] = self.0.min[k].min(other.0.min[k]);
-            self.0.max[k] = self.0.max[k].max(other.0.max[k]);
-        }
     }
 }
 
@@ -133,6 +128,28 @@ impl Clash {
         found.extend(parts.into_iter().flatten());
         found.sort_unstable();
         Ok(found)
+    }
+
+    /// For each of `count` closed shells the number of others around it;
+    /// `shells` tells the shell of each triangle. Triangles that are gone
+    /// count for nothing.
+    pub fn depths(
+        &self,
+        points: &[Point],
+        triangles: &[[u32; 3]],
+        shells: &[u32],
+        count: usize,
+    ) -> Vec<Option<u32>> {
+        let frame = Frame::new(points);
+        let alive = (0..triangles.len()).filter(|&t| (triangles[t][0] as usize) < points.len());
+        let listed = Triangles {
+            face: alive.clone().map(|t| t as u32).collect(),
+            corners: alive.map(|t| triangles[t]).collect(),
+        };
+        let canonical: Vec<u32> = (0..points.len() as u32).collect();
+        let none = vec![false; listed.corners.len()];
+        let field = Field::new(&frame, &canonical, &listed, &none);
+        nesting::depths(&field, shells, &vec![true; count])
     }
 
     fn flats(&self, tree: &Tree, points: &[Point], triangles: &[[u32; 3]]) -> Vec<bool> {

@@ -170,7 +170,7 @@ fn next(c: u32) -> u32 {
 }
 
 fn previous(c: u32) -> u32 {
-    if c % 3 == 0 {
+    if c.is_multiple_of(3) {
         c + 2
     } else {
         c - 1

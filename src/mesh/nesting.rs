@@ -16,8 +16,9 @@ use rayon::prelude::*;
 
 /// For each shell the number of closed shells around it; `None` for shells
 /// that are not closed or have all their corners at corners of other shells.
-pub(super) fn depths(field: &Field, topology: &Topology, closed: &[bool]) -> Vec<Option<u32>> {
-    let around = around(field, topology, closed);
+/// `shells` tells the shell of each face.
+pub(super) fn depths(field: &Field, shells: &[u32], closed: &[bool]) -> Vec<Option<u32>> {
+    let around = around(field, shells, closed);
     around
         .iter()
         .map(|a| Some(a.as_ref()?.len() as u32))
@@ -25,12 +26,12 @@ pub(super) fn depths(field: &Field, topology: &Topology, closed: &[bool]) -> Vec
 }
 
 /// For each shell the closed shells around it; `None` as in [`depths`].
-fn around(field: &Field, topology: &Topology, closed: &[bool]) -> Vec<Option<Vec<u32>>> {
-    let witnesses = witnesses(field, topology, closed.len());
+fn around(field: &Field, shells: &[u32], closed: &[bool]) -> Vec<Option<Vec<u32>>> {
+    let witnesses = witnesses(field, shells, closed.len());
     (0..closed.len())
         .into_par_iter()
         .map(|s| match (closed[s], witnesses[s]) {
-            (true, Some(v)) => Some(around_vertex(field, topology, closed, s as u32, v)),
+            (true, Some(v)) => Some(around_vertex(field, shells, closed, s as u32, v)),
             _ => None,
         })
         .collect()
@@ -64,13 +65,13 @@ pub fn enclosing(mesh: &PolygonMesh) -> Vec<Option<Vec<u32>>> {
     }
     let (canonical, _) = coincidences(&frame, &finite);
     let field = Field::new(&frame, &canonical, &triangles, &skip);
-    around(&field, &topology, &closed)
+    around(&field, &topology.shell, &closed)
 }
 
 /// For each shell a vertex at whose position no other shell has one.
-fn witnesses(field: &Field, topology: &Topology, shells: usize) -> Vec<Option<u32>> {
+fn witnesses(field: &Field, shells: &[u32], count: usize) -> Vec<Option<u32>> {
     const SEVERAL: u32 = u32::MAX;
-    let shell = |t: u32| topology.shell[field.triangles.face[t as usize] as usize];
+    let shell = |t: u32| shells[field.triangles.face[t as usize] as usize];
     let mut owner: Vec<Option<u32>> = vec![None; field.frame.points.len()];
     for &(t, corners) in &field.slots {
         for v in corners {
@@ -82,7 +83,7 @@ fn witnesses(field: &Field, topology: &Topology, shells: usize) -> Vec<Option<u3
             }
         }
     }
-    let mut witnesses = vec![None; shells];
+    let mut witnesses = vec![None; count];
     for (v, owner) in owner.iter().enumerate() {
         if let Some(witness) = owner.and_then(|s| witnesses.get_mut(s as usize)) {
             witness.get_or_insert(v as u32);
@@ -92,13 +93,7 @@ fn witnesses(field: &Field, topology: &Topology, shells: usize) -> Vec<Option<u3
 }
 
 /// The closed shells but `own` around vertex `v`.
-fn around_vertex(
-    field: &Field,
-    topology: &Topology,
-    closed: &[bool],
-    own: u32,
-    v: u32,
-) -> Vec<u32> {
+fn around_vertex(field: &Field, shells: &[u32], closed: &[bool], own: u32, v: u32) -> Vec<u32> {
     let p = field.frame.points[v as usize];
     let ray = Cuboid {
         min: p,
@@ -107,7 +102,7 @@ fn around_vertex(
     let mut hit = Vec::new();
     field.bvh.query(&ray, |slot| {
         let (t, corners) = field.slots[slot as usize];
-        let shell = topology.shell[field.triangles.face[t as usize] as usize];
+        let shell = shells[field.triangles.face[t as usize] as usize];
         let other = shell != own && closed[shell as usize];
         if other && hits(field.frame.kernel, p, &place(&field.frame.points, corners)) {
             hit.push(shell);

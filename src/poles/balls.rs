@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::NO_POLE;
 use crate::delaunay::Delaunay;
-use crate::geom::Point;
+use crate::geom::{vec3::dist_sq, Ball, Point};
 use crate::predicates::Site;
 use crate::tetra::order;
 
@@ -58,6 +58,35 @@ impl Balls {
         self.sites.is_empty()
     }
 
+    /// The balls in lattice steps of the samples.
+    pub fn on_lattice(&self) -> Vec<Ball> {
+        let step = self.lattice.step();
+        let ball = |s: &Site| Ball::new([s[0], s[1], s[2]].map(|v| v * step), s[3].sqrt() * step);
+        self.sites.par_iter().map(ball).collect()
+    }
+
+    /// Appends a ball that touches the given samples, ascending.
+    pub fn push(&mut self, site: Site, touched: &[u32]) {
+        self.sites.push(site);
+        self.touched.extend_from_slice(touched);
+        self.touch_starts.push(self.touched.len() as u32);
+        self.touches_frame.push(false);
+    }
+
+    /// Adds samples to those the last ball touches.
+    pub fn touch_last(&mut self, touched: &[u32]) {
+        let Some(last) = self.len().checked_sub(1) else {
+            return;
+        };
+        let from = self.touch_starts[last] as usize;
+        let mut all = self.touched.split_off(from);
+        all.extend_from_slice(touched);
+        all.sort_unstable();
+        all.dedup();
+        self.touched.extend_from_slice(&all);
+        self.touch_starts[last + 1] = self.touched.len() as u32;
+    }
+
     /// The samples ball `b` touches, ascending.
     pub fn touching(&self, b: u32) -> &[u32] {
         let b = b as usize;
@@ -65,7 +94,11 @@ impl Balls {
     }
 }
 
-/// Makes balls of the chosen cells: equal centres are one ball.
+/// The place of a cell's centre along the curve, the centre, the cell.
+type Keyed = (u64, Point, u32);
+
+/// Makes balls of the chosen cells: equal centres are one ball, which touches
+/// the samples of all cells with that centre, chosen or not.
 pub(super) fn gather(
     delaunay: &Delaunay,
     centres: &[Point],
@@ -80,18 +113,26 @@ pub(super) fn gather(
     }
     // Order along the curve by centre; equal centres end up side by side.
     let half = crate::predicates::LIMIT / 2.0;
-    let mut keyed: Vec<(u64, Point, u32)> = (0..centres.len() as u32)
+    let key = |c: u32| -> Keyed {
+        let p = centres[c as usize];
+        (order::key(&[p[0], p[1], p[2], 0.0], half / 2.0), p, c)
+    };
+    let place =
+        |a: &Keyed, b: &Keyed| (0..3).fold(a.0.cmp(&b.0), |o, k| o.then(a.1[k].total_cmp(&b.1[k])));
+    let cells = 0..centres.len() as u32;
+    let (chosen_cells, others): (Vec<u32>, Vec<u32>) = cells.partition(|&c| used[c as usize]);
+    let mut keyed: Vec<Keyed> = chosen_cells.into_par_iter().map(key).collect();
+    keyed.par_sort_unstable_by(|a, b| place(a, b).then(a.2.cmp(&b.2)));
+    let same_centre = |c: &Keyed| keyed.binary_search_by(|k| place(k, c)).is_ok();
+    let more: Vec<Keyed> = others
         .into_par_iter()
-        .filter(|&c| used[c as usize])
-        .map(|c| {
-            let p = centres[c as usize];
-            (order::key(&[p[0], p[1], p[2], 0.0], half / 2.0), p, c)
-        })
+        .map(key)
+        .filter(same_centre)
         .collect();
-    keyed.par_sort_unstable_by(|a, b| {
-        let place = (0..3).fold(a.0.cmp(&b.0), |o, k| o.then(a.1[k].total_cmp(&b.1[k])));
-        place.then(a.2.cmp(&b.2))
-    });
+    if !more.is_empty() {
+        keyed.extend(more);
+        keyed.par_sort_unstable_by(|a, b| place(a, b).then(a.2.cmp(&b.2)));
+    }
     let mut firsts: Vec<u32> = Vec::new();
     for k in 0..keyed.len() {
         if k == 0 || keyed[k].1 != keyed[k - 1].1 {
@@ -110,7 +151,6 @@ pub(super) fn gather(
         .collect();
     sequence.sort_unstable();
 
-    let step = lattice.step();
     let mut balls = Balls {
         sites: Vec::with_capacity(count),
         lattice,
@@ -135,14 +175,7 @@ pub(super) fn gather(
         corners.sort_unstable();
         corners.dedup();
         let centre = keyed[from].1;
-        let nearest = corners
-            .iter()
-            .map(|&v| power_weight(centre, &delaunay.sites[v as usize]))
-            .fold(f64::INFINITY, f64::min);
-        let weight = (nearest / (step * step)).round();
-        balls
-            .sites
-            .push([centre[0] / step, centre[1] / step, centre[2] / step, weight]);
+        balls.sites.push(site(delaunay, centre, &corners, lattice));
         let real = corners.iter().filter(|&&v| !delaunay.is_frame(v));
         balls.touched.extend(real);
         balls.touch_starts.push(balls.touched.len() as u32);
@@ -165,13 +198,22 @@ pub(super) fn gather(
     (balls, of_sample)
 }
 
-/// The squared distance from a centre to a sample, in floats: exact to one
-/// part in 2^51, far below the noise of rounding the centre.
-fn power_weight(centre: Point, site: &Site) -> f64 {
-    let d = [
-        centre[0] - site[0],
-        centre[1] - site[1],
-        centre[2] - site[2],
-    ];
-    d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+/// The ball about a centre (in lattice steps of the samples) that reaches the
+/// nearest of its samples, as a site.
+pub(super) fn site(
+    delaunay: &Delaunay,
+    centre: Point,
+    corners: &[u32],
+    lattice: BallLattice,
+) -> Site {
+    let step = lattice.step();
+    let nearest = corners
+        .iter()
+        .map(|&v| {
+            let s = &delaunay.sites[v as usize];
+            dist_sq(centre, [s[0], s[1], s[2]])
+        })
+        .fold(f64::INFINITY, f64::min);
+    let weight = (nearest / (step * step)).round();
+    [centre[0] / step, centre[1] / step, centre[2] / step, weight]
 }

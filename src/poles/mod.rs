@@ -9,16 +9,20 @@
 //!    it. Cells whose rounded centres coincide are one ball that touches the
 //!    samples of all of them: on a sphere every inner pole is the centre.
 //! 4. With a bound `lambda`, poles that fail the skinniness test are dropped
-//!    ([`skinny`]).
+//!    (`skinny.rs`).
 //!
 //! Balls come numbered along a space-filling curve by their centres, so their
 //! ids depend on nothing but the set of samples.
 
 mod balls;
+mod candidates;
+mod check;
 mod select;
 mod skinny;
 
 pub use balls::{BallLattice, Balls};
+pub use candidates::Candidates;
+pub use check::{check, Finding};
 
 use crate::context::{Cancelled, Context, Stage};
 use crate::delaunay::{Delaunay, Samples};
@@ -50,6 +54,31 @@ pub struct Poles {
 }
 
 /// Finds the poles of all samples.
+///
+/// # Errors
+/// [`Cancelled`].
+///
+/// ```
+/// use powercrust::{delaunay, poles, Context};
+/// // The corners of an octahedron: one ball touches them all from inside.
+/// let mut points = vec![];
+/// for axis in 0..3 { for side in [-1.0, 1.0] {
+///     let mut p = [0.0; 3];
+///     p[axis] = side;
+///     points.push(p);
+/// }}
+/// let cx = Context::default();
+/// let samples = delaunay::samples(&points, 5.0)?;
+/// let delaunay = delaunay::delaunay(&samples, &cx)?;
+/// let poles = poles::poles(&samples, &delaunay, &poles::PoleOptions::default(), &cx)?;
+/// let inner: Vec<u32> = (0..poles.balls.len() as u32)
+///     .filter(|&b| poles.balls.touching(b).len() == 6)
+///     .collect();
+/// assert_eq!(inner.len(), 1);
+/// assert!(poles.of_sample.iter().all(|pair| pair.contains(&inner[0])));
+/// assert_eq!(poles::check(&samples, &poles), []);
+/// # Ok::<(), powercrust::Error>(())
+/// ```
 pub fn poles(
     samples: &Samples,
     delaunay: &Delaunay,

@@ -3,29 +3,23 @@
 use rayon::prelude::*;
 
 use super::{skinny, BallLattice, PoleOptions, NO_POLE};
-use crate::delaunay::{circumcentre, Delaunay};
+use crate::delaunay::{rounded_circumcentre, Delaunay};
 use crate::geom::vec3::{dist_sq, dot, sub};
 use crate::geom::Point;
 
 /// The rounded circumcentre of each cell, in lattice steps of the samples.
 pub(super) fn centres(delaunay: &Delaunay, lattice: BallLattice) -> Vec<Point> {
-    let step = lattice.step();
-    delaunay
-        .complex
-        .cells
+    let cells = &delaunay.complex.cells;
+    cells
         .par_iter()
-        .map(|cell| {
-            // Corners in ascending order: the same floats however the cell
-            // came about.
-            let mut corners = *cell;
-            corners.sort_unstable();
-            let sites = corners.map(|v| &delaunay.sites[v as usize]);
-            let centre = circumcentre(sites, step / 64.0);
-            centre
-                .position
-                .map(|v| (v / step).round_ties_even() * step + 0.0)
-        })
+        .map(|&cell| centre(delaunay, cell, lattice))
         .collect()
+}
+
+/// The rounded circumcentre of one cell.
+pub(super) fn centre(delaunay: &Delaunay, cell: [u32; 4], lattice: BallLattice) -> Point {
+    let sites = cell.map(|v| &delaunay.sites[v as usize]);
+    rounded_circumcentre(sites, lattice.step())
 }
 
 /// The cells chosen as poles.

@@ -6,10 +6,15 @@
 //! every other cell is then bounded, so whatever the labels, the faces between
 //! unlike cells close up as long as the sentinels count as outer.
 
-use crate::context::{Cancelled, Context, Stage};
+mod check;
+
+pub use check::{check, Finding};
+
+use crate::context::{Context, Stage};
 use crate::delaunay::{circumcentre, corners, Centre};
+use crate::error::Error;
 use crate::predicates::{Counts, Site, LIMIT};
-use crate::tetra::{triangulate, Complex, InPower};
+use crate::tetra::{extend, locate, triangulate, Complex, InPower, NONE};
 
 /// The regular triangulation of balls and sentinels.
 #[derive(Clone, Debug)]
@@ -34,6 +39,94 @@ impl PowerDiagram {
         v as usize >= self.balls
     }
 
+    /// The ball whose power at a site is least, found by walking from a cell;
+    /// `None` for a sentinel.
+    pub fn owner(&self, site: &Site, hint: u32) -> Option<u32> {
+        let mut counts = Counts::default();
+        let cell = locate(&self.complex, &self.sites, site, hint, &mut counts);
+        let at = |v: u32| {
+            let s = &self.sites[v as usize];
+            let d = [s[0] - site[0], s[1] - site[1], s[2] - site[2]];
+            d[0] * d[0] + d[1] * d[1] + d[2] * d[2] - s[3]
+        };
+        // Cells are convex: a ball that is not the owner has a neighbour of
+        // less power, so going downhill ends at the owner.
+        let least = |corners: [u32; 4], best: u32| {
+            let all = corners.into_iter().chain([best]);
+            all.min_by(|&a, &b| at(a).total_cmp(&at(b)).then(a.cmp(&b)))
+                .unwrap_or(best)
+        };
+        let corners = self.complex.cells[cell as usize];
+        let mut best = least(corners, corners[0]);
+        let mut star = vec![cell];
+        let mut next = 0;
+        while next < star.len() {
+            let c = star[next];
+            next += 1;
+            let better = least(self.complex.cells[c as usize], best);
+            if at(better) < at(best) {
+                best = better;
+                star.clear();
+                star.push(c);
+                next = 0;
+                continue;
+            }
+            for packed in self.complex.neighbours[c as usize] {
+                let d = packed >> 2;
+                let around = packed != NONE
+                    && self.complex.cells[d as usize].contains(&best)
+                    && !star.contains(&d);
+                if around {
+                    star.push(d);
+                }
+            }
+        }
+        (!self.is_sentinel(best)).then_some(best)
+    }
+
+    /// Inserts more balls: they get the ids after the present ones. The rules
+    /// of [`power_diagram`] hold for all of them together.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] and [`Error::Cancelled`]; the diagram has lost its
+    /// cells then.
+    pub fn extend(&mut self, balls: &[Site], context: &Context) -> Result<(), Error> {
+        if balls.is_empty() {
+            return Ok(());
+        }
+        let (old, added) = (self.balls as u32, balls.len() as u32);
+        // The sentinels keep their ids while inserting; then they move back.
+        let mut sites = self.sites.clone();
+        sites.extend_from_slice(balls);
+        let complex = std::mem::take(&mut self.complex);
+        let built = extend(
+            &InPower(&sites),
+            complex,
+            old + 8..old + 8 + added,
+            Stage::Power,
+            context,
+        )?;
+        let renamed = |v: u32| match v {
+            v if v < old => v,
+            v if v < old + 8 => v + added,
+            v => v - 8,
+        };
+        self.complex = built.complex;
+        for cell in &mut self.complex.cells {
+            *cell = cell.map(renamed);
+        }
+        sites.copy_within(old as usize + 8.., old as usize);
+        let sentinels = self.sites[old as usize..].to_vec();
+        sites.truncate((old + added) as usize);
+        sites.extend(sentinels);
+        self.sites = sites;
+        self.balls += balls.len();
+        self.hidden.extend(built.hidden.into_iter().map(renamed));
+        self.hidden.sort_unstable();
+        self.counts += built.counts;
+        Ok(())
+    }
+
     /// The power vertex dual to a cell, in the units of the sites.
     pub fn vertex(&self, cell: [u32; 4], tolerance: f64) -> Centre {
         let mut corners = cell;
@@ -43,14 +136,23 @@ impl PowerDiagram {
 }
 
 /// Builds the power diagram of balls on a lattice: integer centres of at most
-/// `LIMIT / scale / 4` in size, integer squared radii, no two centres equal; number them
+/// `LIMIT / scale / 2` in size, integer squared radii, no two centres equal; number them
 /// along a space-filling curve. `scale` is the lattice's step in steps of the
 /// samples' lattice.
-pub fn power_diagram(
-    balls: &[Site],
-    scale: f64,
-    context: &Context,
-) -> Result<PowerDiagram, Cancelled> {
+///
+/// # Errors
+/// [`Error::TooLarge`] and [`Error::Cancelled`].
+///
+/// ```
+/// use powercrust::{power, Context};
+/// // A ball of radius 5 hides a smaller one inside it.
+/// let balls = [[0.0, 0.0, 0.0, 25.0], [1.0, 0.0, 0.0, 4.0], [9.0, 0.0, 0.0, 4.0]];
+/// let diagram = power::power_diagram(&balls, 1024.0, &Context::default())?;
+/// assert_eq!(diagram.hidden, [1]);
+/// assert_eq!(power::check(&diagram), []);
+/// # Ok::<(), powercrust::Error>(())
+/// ```
+pub fn power_diagram(balls: &[Site], scale: f64, context: &Context) -> Result<PowerDiagram, Error> {
     let mut sites = balls.to_vec();
     sites.extend(corners(LIMIT / scale));
     let built = triangulate(&InPower(&sites), balls.len() as u32, Stage::Power, context)?;

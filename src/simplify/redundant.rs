@@ -27,6 +27,24 @@ use crate::poles::{Balls, Poles, NO_POLE};
 /// Merges redundant balls; `share` is the part of the sampling error by which
 /// a ball may miss a sample it stands for, 0 for none. The spacing of the
 /// samples, which this needs, comes with the balls, in steps of the lattice.
+///
+/// ```
+/// use powercrust::{delaunay, poles, simplify::merge_redundant, Context};
+/// // A torus: inner poles crowd along a circle.
+/// let points: Vec<[f64; 3]> = (0..900).map(|k| {
+///     let (u, v) = (f64::from(k) * 0.007, f64::from(k) * 2.4);
+///     let rho = 3.0 + v.cos();
+///     [rho * u.cos(), rho * u.sin(), v.sin()]
+/// }).collect();
+/// let cx = Context::default();
+/// let samples = delaunay::samples(&points, 5.0)?;
+/// let delaunay = delaunay::delaunay(&samples, &cx)?;
+/// let all = poles::poles(&samples, &delaunay, &poles::PoleOptions::default(), &cx)?;
+/// let before = all.balls.len();
+/// let (few, _) = merge_redundant(&samples, &delaunay, all, 0.5);
+/// assert!(few.balls.len() * 5 < before * 4, "{} of {before}", few.balls.len());
+/// # Ok::<(), powercrust::Error>(())
+/// ```
 pub fn merge_redundant(
     samples: &Samples,
     delaunay: &Delaunay,

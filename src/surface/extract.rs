@@ -10,7 +10,7 @@
 use rayon::prelude::*;
 
 use super::raw::{RawCrust, NONE};
-use crate::geom::{Point, Side};
+use crate::geom::{vec3::dist_sq, Point, Side};
 use crate::power::PowerDiagram;
 use crate::tetra::unpack;
 
@@ -40,6 +40,26 @@ const EDGES: [[usize; 4]; 6] = [
 const CORNERS: [u32; 5] = [0, 3, 4, 3, 0];
 
 /// Extracts the crust. Sentinels count as outer.
+///
+/// ```
+/// use powercrust::surface::{raw_crust, Placement};
+/// use powercrust::{power, Context, Side};
+/// // One inner ball among six outer ones: its cell is a cube.
+/// let mut balls = vec![[0.0, 0.0, 0.0, 1.0]];
+/// for axis in 0..3 { for side in [-8.0, 8.0] {
+///     let mut ball = [0.0, 0.0, 0.0, 1.0];
+///     ball[axis] = side;
+///     balls.push(ball);
+/// }}
+/// let diagram = power::power_diagram(&balls, 1024.0, &Context::default())?;
+/// let mut sides = vec![Side::Outer; 7];
+/// sides[0] = Side::Inner;
+/// let place = Placement { touching: &|_| &[], sample: &|_| [0.0; 3], to_user: &|p| p };
+/// let crust = raw_crust(&diagram, &sides, &place);
+/// assert_eq!(crust.balls.len(), 6);
+/// assert!(crust.positions.iter().flatten().all(|v| v.abs() == 4.0));
+/// # Ok::<(), powercrust::Error>(())
+/// ```
 pub fn raw_crust(power: &PowerDiagram, sides: &[Side], place: &Placement) -> RawCrust {
     let cells = &power.complex.cells;
     // Which vertices of each cell are inner, as bits.
@@ -182,22 +202,29 @@ impl View<'_> {
 }
 
 /// Fact F2: a power vertex whose four balls share a sample is that sample.
+/// Where they share two, their centres are nearly coplanar and the vertex
+/// lies on the line between the two: the nearer one takes it.
 fn place_vertex(power: &PowerDiagram, cell: [u32; 4], place: &Placement) -> (Point, u32) {
-    if !cell.iter().any(|&v| power.is_sentinel(v)) {
-        let lists = cell.map(|v| (place.touching)(v));
-        if let Some(s) = common(lists) {
-            return ((place.sample)(s), s);
+    let vertex = || (place.to_user)(power.vertex(cell, 2f64.powi(-20)).position);
+    if cell.iter().any(|&v| power.is_sentinel(v)) {
+        return (vertex(), NONE);
+    }
+    let mut lists = cell.map(|v| (place.touching)(v));
+    lists.sort_by_key(|l| l.len());
+    let mut shared = (lists[0].iter().copied())
+        .filter(|s| lists[1..].iter().all(|l| l.binary_search(s).is_ok()));
+    let Some(first) = shared.next() else {
+        return (vertex(), NONE);
+    };
+    let mut best = first;
+    if let Some(second) = shared.next() {
+        let at = vertex();
+        let distance = |s: u32| dist_sq((place.sample)(s), at);
+        for s in [second].into_iter().chain(shared) {
+            if distance(s) < distance(best) {
+                best = s;
+            }
         }
     }
-    let centre = power.vertex(cell, 2f64.powi(-20));
-    ((place.to_user)(centre.position), NONE)
-}
-
-/// The smallest element of four ascending lists.
-fn common(mut lists: [&[u32]; 4]) -> Option<u32> {
-    lists.sort_by_key(|l| l.len());
-    lists[0]
-        .iter()
-        .copied()
-        .find(|s| lists[1..].iter().all(|l| l.binary_search(s).is_ok()))
+    ((place.sample)(best), best)
 }

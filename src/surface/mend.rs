@@ -29,27 +29,38 @@
 //! elsewhere (see the pipeline). That ends, for at the latest where no
 //! cell is inside no surface is left.
 
-use super::mend_coarsen::{area, coarsen, Coarsened};
-use super::mend_local::{mend, Mended};
+use super::mend_coarsen::{coarsen, Coarsened};
+use super::mend_local::mend;
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
+use super::mend_place::{settle, unlevel};
+use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context};
-use crate::geom::Point;
+use crate::geom::vec3::{norm, scale, sub};
+use crate::geom::{Ball, Point};
 use crate::mesh::clash::Clash;
 
-/// Searches of all pairs, at most: one to find, the others to make sure.
-const SEARCHES: usize = 4;
+/// The surface never moves by more than this share of the spacing, nor of the
+/// radius of the balls beside it.
+const MOST: f64 = 0.05;
+/// Moves by this share of the spacing count for nothing.
+const NOTHING: f64 = 0.004;
+
+/// Power vertices leave the planes of their faces by this share of the spacing.
+const UNLEVEL: f64 = 1e-6;
 
 /// How to mend.
 pub struct MendOptions<'a> {
-    /// How far the surface may move to lose a vertex that is no sample, in
-    /// lengths of the local spacing; 0 leaves all that do no harm.
+    /// How far the surface may move to lose a vertex that is no sample, as a
+    /// share of the sampling error `h² / 2r`; 0 leaves all that do no harm.
     pub flatness: f64,
     /// New positions are rounded to single precision, as those given are.
     pub single: bool,
     /// The spacing at each sample, in the units of the mesh.
     pub spacing: &'a (dyn Fn(u32) -> f64 + Sync),
+    /// Each ball, in the units of the mesh.
+    pub ball: &'a (dyn Fn(u32) -> Option<Ball> + Sync),
 }
 
 /// A mended crust of triangles and what was done.
@@ -59,6 +70,8 @@ pub struct Mending {
     pub crust: Crust,
     /// The face of the crust given that each triangle comes from.
     pub source: Vec<u32>,
+    /// Vertices that are no samples moved onto the surface.
+    pub settled: usize,
     /// Vertices drawn into neighbours to coarsen the mesh.
     pub collapsed: usize,
     /// Edges turned for better angles.
@@ -93,48 +106,59 @@ pub fn mend_crust(
         points.iter_mut().for_each(|p| *p = round(*p));
     }
     let mut mesh = TriMesh::new(crust, points, source);
+    let shells = Shells::of(&mesh);
     let mut done = Mending::default();
     if options.flatness > 0.0 {
         let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
-        let mut tolerance = spread(&mesh, |s| length((options.spacing)(s)));
-        tolerance.iter_mut().for_each(|t| *t *= options.flatness);
+        let spacing = spread(&mesh, |s| length((options.spacing)(s)));
+        let radii = radii(&mesh, |t| {
+            let balls = crust.face_balls[t as usize].iter().filter(|&&b| b != NONE);
+            let radii = balls.filter_map(|&b| Some(length((options.ball)(b)?.radius)));
+            radii.fold(f64::INFINITY, f64::min)
+        });
+        let error = |h: f64, r: f64| (h * h / (2.0 * r)).min(MOST * h).min(MOST * r);
+        let limit: Vec<f64> = (spacing.iter().zip(&radii))
+            .map(|(&h, &r)| error(h, r))
+            .collect();
+        let outward = |t: u32| {
+            let [inner, outer] = crust.face_balls[t as usize];
+            let (i, o) = ((options.ball)(inner)?.centre, (options.ball)(outer)?.centre);
+            let d = sub(o, i);
+            let size = norm(d);
+            (size > 0.0 && size.is_finite()).then(|| scale(d, 1.0 / size))
+        };
+        done.settled = settle(&mut mesh, &outward, &limit, &round);
+        let tolerance: Vec<f64> = (limit.iter().zip(&spacing))
+            .map(|(e, h)| (options.flatness * e).max(NOTHING * h))
+            .collect();
         let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
+        unlevel(&mut mesh, UNLEVEL, &spacing, &round);
     }
     let moved = draw_apart(&mut mesh, &round);
     done.drawn_apart = moved.len();
     mesh.free(&moved);
-    for search in 0..SEARCHES {
-        let tree = clash.tree(&mesh.points, &mesh.tris);
-        let mut pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
-        drop(tree);
-        pairs.extend(lost_areas(&mesh));
-        pairs.sort_unstable();
-        pairs.dedup();
-        if search == 0 {
-            done.found = pairs.len();
+    let tree = clash.tree(&mesh.points, &mesh.tris);
+    let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
+    done.found = pairs.len();
+    let (first, mut left) = mend(&mut mesh, &clash, tree, pairs, 0.0, &round, cx)?;
+    if left.is_empty() {
+        let least = least_area(&mesh);
+        let pairs = thin(&mesh, least);
+        if !pairs.is_empty() {
+            let tree = clash.tree(&mesh.points, &mesh.tris);
+            let (second, mut rest) = mend(&mut mesh, &clash, tree, pairs, least, &round, cx)?;
+            // What is no worse than thin may stay.
+            rest.retain(|&(s, t)| s != t || clash.is_flat(&mesh.place(s)));
+            left = rest;
+            done.changes += second.changes;
         }
-        done.left.clear();
-        if pairs.is_empty() {
-            break;
-        }
-        let (
-            Mended {
-                changes,
-                samples_lost,
-                rounds,
-                ..
-            },
-            left,
-        ) = mend(&mut mesh, &clash, pairs, &round, cx)?;
-        done.changes += changes;
-        done.samples_lost += samples_lost;
-        done.rounds += rounds;
-        done.left = left.iter().map(|&(s, t)| [s, t]).collect();
-        if changes == 0 {
-            break;
-        }
+        done.samples_lost += shells.take_out_reversed(&mut mesh, &clash);
     }
+    done.changes += first.changes;
+    done.samples_lost += first.samples_lost;
+    done.rounds = first.rounds;
+    done.left = left.iter().map(|&(s, t)| [s, t]).collect();
     // The triangles left are told by the faces they come from.
     for pair in &mut done.left {
         *pair = pair.map(|t| mesh.source[t as usize]);
@@ -143,6 +167,19 @@ pub fn mend_crust(
     done.crust = mended;
     done.source = source;
     Ok(done)
+}
+
+/// The least radius of the balls whose cells meet at each vertex.
+fn radii(mesh: &TriMesh, radius: impl Fn(u32) -> f64) -> Vec<f64> {
+    let mut least = vec![f64::INFINITY; mesh.points.len()];
+    for (t, tri) in mesh.tris.iter().enumerate() {
+        let r = radius(t as u32);
+        for &v in tri {
+            let known = &mut least[v as usize];
+            *known = known.min(r);
+        }
+    }
+    least
 }
 
 /// The spacing at every vertex: that of its sample, else of the nearest along
@@ -175,11 +212,4 @@ fn spread(mesh: &TriMesh, spacing: impl Fn(u32) -> f64) -> Vec<f64> {
         .filter(|l| !l.is_finite())
         .for_each(|l| *l = 0.0);
     known
-}
-
-/// Triangles so thin that sums of products of coordinates about the middle,
-/// as others compute areas, can come out as zero; paired with themselves.
-fn lost_areas(_mesh: &TriMesh) -> Vec<(u32, u32)> {
-    let _ = area;
-    Vec::new()
 }

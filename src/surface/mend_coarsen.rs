@@ -22,6 +22,8 @@ const TURN: f64 = 0.7;
 const NEEDLE_TURN: f64 = 0.3;
 /// Triangles this good (height over longest side) need not be kept as good.
 const GOOD: f64 = 0.2;
+/// Edges of triangles this good stay.
+const FINE: f64 = 0.5;
 /// Rounds of collapsing and turning.
 const ROUNDS: usize = 3;
 
@@ -45,6 +47,7 @@ pub(crate) fn coarsen(
         moved: vec![0.0; tolerance.len()],
         fan: Vec::new(),
         ring: Vec::new(),
+        places: Vec::new(),
         normals: Vec::new(),
     };
     let mut done = Coarsened::default();
@@ -80,8 +83,11 @@ struct Work<'a> {
     fan: Vec<u32>,
     /// The neighbours of a vertex; triangle k lies between k and k + 1.
     ring: Vec<u32>,
-    /// Vector area of each triangle of a fan and its quality.
-    normals: Vec<(Point, f64)>,
+    /// Where they are, the first again at the end.
+    places: Vec<Point>,
+    /// Vector area of each triangle of a fan, its squared size, and whether
+    /// it says which way the surface looks.
+    normals: Vec<(Point, f64, bool)>,
 }
 
 impl Work<'_> {
@@ -95,36 +101,40 @@ impl Work<'_> {
         }
         let p = mesh.at(v);
         let limit = self.tolerance[v as usize] - self.moved[v as usize];
+        if limit <= 0.0 {
+            return false;
+        }
         self.ring.clear();
         self.ring.extend(self.fan.iter().map(|&h| mesh.head(h)));
+        self.places.clear();
+        self.places.extend(self.ring.iter().map(|&w| mesh.at(w)));
+        self.places.push(self.places[0]);
         self.normals.clear();
         let mut mean = [0.0; 3];
-        let mut worst = f64::INFINITY;
+        let mut worst = GOOD * GOOD;
         for k in 0..n {
-            let t = [p, mesh.at(self.ring[k]), mesh.at(self.ring[(k + 1) % n])];
-            let (normal, longest) = area(&t);
-            let size = norm(normal);
-            worst = worst.min(size / longest);
+            let (normal, longest) = area(&[p, self.places[k], self.places[k + 1]]);
+            let size = norm_sq(normal);
+            worst = worst.min(size / (longest * longest));
             mean = add(mean, normal);
             // The height over the longest side tells needles.
-            self.normals.push((normal, size / longest.sqrt()));
+            let fat = size > limit * limit * longest;
+            self.normals.push((normal, size, fat));
         }
-        let mean_size = norm(mean);
-        let mut best = (worst.min(GOOD), 0.0, NONE);
+        let mut best = (worst, 0.0, NONE);
         for j in 0..n {
-            let Some((quality, distance)) = self.try_collapse(p, j, mean, mean_size, best.0, limit)
-            else {
+            let Some((quality, distance)) = self.try_collapse(p, j, mean, best.0, limit) else {
                 continue;
             };
             if self.mesh.can_collapse(self.fan[j], &self.fan) {
                 best = (quality, distance, self.fan[j]);
             }
         }
-        let (_, distance, h) = best;
+        let (_, distance_sq, h) = best;
         if h == NONE {
             return false;
         }
-        let total = self.moved[v as usize] + distance;
+        let total = self.moved[v as usize] + distance_sq.sqrt();
         self.mesh.collapse(h, &self.fan);
         for &w in &self.ring {
             let moved = &mut self.moved[w as usize];
@@ -133,44 +143,68 @@ impl Work<'_> {
         true
     }
 
-    /// The quality of the triangles if the vertex at `p` is drawn into
-    /// neighbour `j` and its distance from them; `None` if some are worse
-    /// than `least` or turn over, or the distance is beyond the limit.
+    /// The squared quality of the triangles if the vertex at `p` is drawn
+    /// into neighbour `j` and its squared distance from them; `None` if some
+    /// are no better than `least` or turn over, or the distance is beyond the
+    /// limit.
     fn try_collapse(
         &self,
         p: Point,
         j: usize,
         mean: Point,
-        mean_size: f64,
         least: f64,
         limit: f64,
     ) -> Option<(f64, f64)> {
         let n = self.ring.len();
-        let at = |k: usize| self.mesh.at(self.ring[k % n]);
-        let to = at(j);
+        let to = self.places[j];
         let mut quality = f64::INFINITY;
-        let mut distance_sq = f64::INFINITY;
-        for k in (j + 1..j + n - 1).map(|k| k % n) {
-            let t = [to, at(k), at(k + 1)];
-            let (normal, longest) = area(&t);
-            let size = norm(normal);
-            quality = quality.min(size / longest);
+        let others = (j + 1..n).chain(0..j.saturating_sub(1));
+        let others = others.filter(|&k| k + 1 != j + n);
+        for k in others.clone() {
+            let (normal, longest) = area(&[to, self.places[k], self.places[k + 1]]);
+            let size = norm_sq(normal);
+            quality = quality.min(size / (longest * longest));
             if quality <= least {
                 return None;
             }
-            let (old, height) = self.normals[k];
-            let turned = if height > self.tolerance[self.ring[j] as usize].max(limit) {
-                dot(normal, old) < TURN * size * norm(old)
+            let (old, old_size, fat) = self.normals[k];
+            let turned = if fat {
+                turns(dot(normal, old), TURN, size * old_size)
             } else {
-                dot(normal, mean) < NEEDLE_TURN * size * mean_size
+                turns(dot(normal, mean), NEEDLE_TURN, size * norm_sq(mean))
             };
             if turned {
                 return None;
             }
-            distance_sq = distance_sq.min(point_triangle_sq(p, &t));
         }
-        let distance = distance_sq.sqrt();
-        (distance <= limit).then_some((quality, distance))
+        // The neighbour itself is a point of the triangles.
+        let mut distance_sq = dist_sq(p, to);
+        for k in others {
+            distance_sq = distance_sq.min(point_triangle_sq(
+                p,
+                &[to, self.places[k], self.places[k + 1]],
+            ));
+        }
+        if distance_sq > limit * limit {
+            return None;
+        }
+        // Nor may the new edges leave the old triangles.
+        for k in (j + 2..j + n - 1).map(|k| k % n) {
+            let middle = scale(add(to, self.places[k]), 0.5);
+            let mut off = f64::INFINITY;
+            for i in 0..n {
+                let t = [p, self.places[i], self.places[i + 1]];
+                off = off.min(point_triangle_sq(middle, &t));
+                if off <= distance_sq {
+                    break;
+                }
+            }
+            if off > limit * limit {
+                return None;
+            }
+            distance_sq = distance_sq.max(off);
+        }
+        Some((quality, distance_sq))
     }
 
     /// Turns edges that make better triangles; returns how many.
@@ -207,9 +241,13 @@ impl Work<'_> {
         let (n2, l2) = area(&[v, u, b]);
         let (m1, k1) = area(&[b, a, u]);
         let (m2, k2) = area(&[a, b, v]);
-        let before = (norm(n1) / l1).min(norm(n2) / l2);
-        let after = (norm(m1) / k1).min(norm(m2) / k2);
-        if after <= 1.1 * before {
+        let quality = |n: Point, longest: f64| norm_sq(n) / (longest * longest);
+        let before = quality(n1, l1).min(quality(n2, l2));
+        if before > FINE * FINE {
+            return false;
+        }
+        let after = quality(m1, k1).min(quality(m2, k2));
+        if after <= 1.2 * before {
             return false;
         }
         let tolerance = ids
@@ -223,9 +261,17 @@ impl Work<'_> {
             return false;
         }
         let mean = add(n1, n2);
-        let mean_size = norm(mean);
-        dot(m1, mean) > TURN * norm(m1) * mean_size && dot(m2, mean) > TURN * norm(m2) * mean_size
+        let size = norm_sq(mean);
+        !turns(dot(m1, mean), TURN, norm_sq(m1) * size)
+            && !turns(dot(m2, mean), TURN, norm_sq(m2) * size)
     }
+}
+
+/// Whether two vectors make an angle of a smaller cosine than given: `product`
+/// is that of their squared lengths.
+#[inline]
+fn turns(dot: f64, cosine: f64, product: f64) -> bool {
+    dot <= 0.0 || dot * dot < cosine * cosine * product
 }
 
 /// Twice the vector area, and the square of the longest side.

@@ -10,11 +10,13 @@
 
 use super::mend_coarsen::area;
 use super::mend_mesh::{prev, TriMesh};
+use super::mend_shell::is_thin;
 use super::raw::NONE;
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::{add, norm, scale, sub};
 use crate::geom::Point;
 use crate::mesh::clash::{Clash, Reach, Tree};
+use std::collections::BTreeSet;
 
 /// How wide the search goes, in steps of escalation.
 const LEVELS: usize = 4;
@@ -24,10 +26,6 @@ const STALE: usize = 4096;
 /// What mending did.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Mended {
-    /// Pairs that met at the start.
-    pub found: usize,
-    /// Pairs that still meet.
-    pub left: usize,
     /// Changes made.
     pub changes: usize,
     /// Samples that are no vertices any more.
@@ -43,35 +41,40 @@ enum Change {
     Shift(u32, Point),
 }
 
-/// Mends `mesh`, whose bad pairs are `pairs`. `round` rounds a new position as
-/// the file will hold it. Tells the pairs that are left.
+/// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles. `round` rounds a new position as
+/// the file will hold it. Triangles count as bad whose vector area is not
+/// above `thin`; with 0 those that have exactly none. Tells the pairs that are
+/// left.
 pub(crate) fn mend(
     mesh: &mut TriMesh,
     clash: &Clash,
+    tree: Tree,
     pairs: Vec<(u32, u32)>,
+    thin: f64,
     round: &dyn Fn(Point) -> Point,
     cx: &Context,
 ) -> Result<(Mended, Vec<(u32, u32)>), Cancelled> {
-    let mut done = Mended {
-        found: pairs.len(),
-        ..Mended::default()
-    };
+    let mut done = Mended::default();
     if pairs.is_empty() {
         return Ok((done, pairs));
     }
-    let tree = clash.tree(&mesh.points, &mesh.tris);
     let mut work = Work {
         changed: vec![false; mesh.tris.len()],
         changes: Vec::new(),
         tree,
         mesh,
         clash,
+        thin,
         round,
         fan: Vec::new(),
         near: Vec::new(),
+        known: BTreeSet::new(),
     };
+    work.learn(&pairs);
     let mut queue = pairs;
-    for level in 0..LEVELS {
+    // Samples do not go for a thin triangle.
+    let levels = if thin > 0.0 { LEVELS - 1 } else { LEVELS };
+    for level in 0..levels {
         done.rounds += 1;
         let mut stuck = Vec::new();
         // Last in, first out: what a change leaves is seen to at once.
@@ -79,7 +82,7 @@ pub(crate) fn mend(
         let mut steps = 0u64;
         while let Some((s, t)) = queue.pop() {
             steps += 1;
-            if steps % 256 == 0 {
+            if steps.is_multiple_of(256) {
                 cx.advance(Stage::Crust, 2, 3)?;
             }
             if !work.bad(s, t) {
@@ -104,13 +107,13 @@ pub(crate) fn mend(
             break;
         }
     }
-    done.left = queue.len();
     Ok((done, queue))
 }
 
 struct Work<'a> {
     mesh: &'a mut TriMesh,
     clash: &'a Clash,
+    thin: f64,
     round: &'a dyn Fn(Point) -> Point,
     tree: Tree,
     /// Triangles that changed since the tree was made.
@@ -118,6 +121,8 @@ struct Work<'a> {
     changes: Vec<u32>,
     fan: Vec<u32>,
     near: Vec<u32>,
+    /// All bad pairs there are, both ways round.
+    known: BTreeSet<(u32, u32)>,
 }
 
 impl Work<'_> {
@@ -140,7 +145,7 @@ impl Work<'_> {
             return false;
         }
         if s == t {
-            return self.flat(s);
+            return self.flat(s) || is_thin(&mesh.place(s), self.thin);
         }
         !self.flat(s)
             && !self.flat(t)
@@ -149,15 +154,39 @@ impl Work<'_> {
                 .meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
     }
 
-    /// The bad pairs of which one is among `touched` (sorted).
-    fn count(&mut self, touched: &[u32], found: &mut Vec<(u32, u32)>) {
+    fn learn(&mut self, pairs: &[(u32, u32)]) {
+        for &(s, t) in pairs {
+            self.known.extend([(s, t), (t, s)]);
+        }
+    }
+
+    /// The number of bad pairs known of which one is among `touched` (sorted).
+    fn known(&self, touched: &[u32]) -> usize {
+        let of = |&s: &u32| {
+            let pairs = self.known.range((s, 0)..=(s, u32::MAX));
+            let once = |&&(_, t): &&(u32, u32)| t >= s || touched.binary_search(&t).is_err();
+            pairs.filter(once).count()
+        };
+        touched.iter().map(of).sum()
+    }
+
+    /// The bad pairs of which one is among `touched` (sorted); gives up when
+    /// there are `most`.
+    fn count(&mut self, touched: &[u32], most: usize, found: &mut Vec<(u32, u32)>) {
         found.clear();
         let mesh = &*self.mesh;
         for &s in touched.iter().filter(|&&s| mesh.alive(s)) {
+            if found.len() >= most {
+                return;
+            }
             let place = mesh.place(s);
             if self.clash.is_flat(&place) {
                 found.push((s, s));
                 continue;
+            }
+            let first = found.len();
+            if self.thin > 0.0 && is_thin(&place, self.thin) {
+                found.push((s, s));
             }
             let reach = Reach::of(&place);
             self.near.clear();
@@ -168,7 +197,6 @@ impl Work<'_> {
                 }
             });
             let list = self.near.iter().chain(&self.changes).chain(touched);
-            let first = found.len();
             for &t in list {
                 if t == s || !mesh.alive(t) || touched.binary_search(&t).is_ok() && t < s {
                     continue;
@@ -204,29 +232,33 @@ impl Work<'_> {
         level: usize,
         done: &mut Mended,
     ) -> Option<Vec<(u32, u32)>> {
-        let changes = self.candidates(s, t, level);
-        let mut best: Option<(i64, f64, Change)> = None;
-        let (mut before, mut after) = (Vec::new(), Vec::new());
-        for change in changes {
-            let Some((touched, cost)) = self.touched(change) else {
-                continue;
-            };
-            self.count(&touched, &mut before);
-            if before.is_empty() {
-                continue;
-            }
-            self.mesh.begin();
-            self.apply(change);
-            self.count(&touched, &mut after);
-            self.mesh.take_back();
-            let gain = before.len() as i64 - after.len() as i64;
-            let rank = (gain, -cost);
-            if gain > 0 && best.is_none_or(|(g, c, _)| rank.0 > g || rank.0 == g && rank.1 > c) {
-                best = Some((rank.0, rank.1, change));
+        let mut changes: Vec<(f64, Change, Vec<u32>, usize)> = Vec::new();
+        for change in self.candidates(s, t, level) {
+            if let Some((touched, cost)) = self.touched(change) {
+                let before = self.known(&touched);
+                if before > 0 {
+                    changes.push((cost, change, touched, before));
+                }
             }
         }
-        let (_, _, change) = best?;
-        let (touched, _) = self.touched(change)?;
+        changes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut best: Option<(usize, usize)> = None;
+        let mut after = Vec::new();
+        for (k, (_, change, touched, before)) in changes.iter().enumerate() {
+            self.mesh.begin();
+            self.apply(*change);
+            self.count(touched, *before, &mut after);
+            self.mesh.take_back();
+            let gain = before.saturating_sub(after.len());
+            if gain > best.map_or(0, |(g, _)| g) {
+                best = Some((gain, k));
+            }
+            // The cheapest that leaves nothing behind will do.
+            if after.is_empty() {
+                break;
+            }
+        }
+        let (_, change, touched, _) = changes.swap_remove(best?.1);
         if let Change::Collapse(h) = change {
             let (from, to) = (self.mesh.tail(h), self.mesh.head(h));
             let sample = self.mesh.samples[from as usize];
@@ -240,7 +272,15 @@ impl Work<'_> {
                 self.changes.push(t);
             }
         }
-        self.count(&touched, &mut after);
+        self.count(&touched, usize::MAX, &mut after);
+        for &s in &touched {
+            let pairs = self.known.range((s, 0)..=(s, u32::MAX));
+            for (s, t) in pairs.copied().collect::<Vec<_>>() {
+                self.known.remove(&(s, t));
+                self.known.remove(&(t, s));
+            }
+        }
+        self.learn(&after);
         Some(after)
     }
 

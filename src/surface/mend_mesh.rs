@@ -50,7 +50,7 @@ pub(crate) fn next(h: u32) -> u32 {
 
 #[inline]
 pub(crate) fn prev(h: u32) -> u32 {
-    if h % 3 == 0 {
+    if h.is_multiple_of(3) {
         h + 2
     } else {
         h - 1
@@ -289,11 +289,6 @@ impl TriMesh {
     pub fn begin(&mut self) {
         self.journal.clear();
         self.recording = true;
-    }
-
-    /// Keeps what was done since [`Self::begin`].
-    pub fn keep(&mut self) {
-        self.recording = false;
     }
 
     /// Takes back what was done since [`Self::begin`].

@@ -1,7 +1,6 @@
 //! From labelled power cells to the surface (section 5 of the paper, steps 5
 //! and 6): the crust between inner and outer cells, and the power shape.
 
-pub mod attributes;
 #[cfg(test)]
 mod check;
 mod clean;
@@ -15,6 +14,8 @@ mod mend_coarsen;
 mod mend_local;
 mod mend_mesh;
 mod mend_pinch;
+mod mend_place;
+mod mend_shell;
 mod pinch;
 mod polygon;
 #[cfg(test)]
@@ -27,7 +28,7 @@ pub(crate) mod stage;
 mod tests;
 mod triangulate;
 mod unfold;
-pub use attributes::VertexSources;
+
 pub use clean::{clean, CleanOptions};
 pub(crate) use components::drop_inverted;
 pub use components::{filter_shells, Keep, MinVolume, Selection, ShellFilter, Shells};

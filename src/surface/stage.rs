@@ -6,7 +6,7 @@ use super::{clean, raw_crust, triangulate_from, CleanOptions, Crust, Placement, 
 use crate::context::{Context, Stage};
 use crate::delaunay::{times_power, Samples};
 use crate::error::Error;
-use crate::geom::{Point, Side};
+use crate::geom::{Ball, Point, Side};
 use crate::mesh::{check, CheckOptions, Finding, PolygonMesh};
 use crate::options::{Faces, Options};
 use crate::poles::Balls;
@@ -136,6 +136,15 @@ impl Job<'_> {
                 Faces::Polygons => 0.0,
             },
             single: options.single,
+            ball: &|b| {
+                let site = self.balls.sites.get(b as usize)?;
+                let centre = [site[0] * step, site[1] * step, site[2] * step];
+                let radius = lattice.length_to_user(site[3].sqrt() * step);
+                Some(Ball::new(
+                    resized(lattice.to_user(centre), unit),
+                    times_power(radius, unit),
+                ))
+            },
             spacing: &|s| {
                 let user = lattice.length_to_user(self.spacing[s as usize]);
                 times_power(user, unit)

@@ -7,8 +7,9 @@
 //! vertices numbered locally (Marot, Pellerin, Remacle 2019), or by sorting
 //! the edges where the boundary is large.
 
-use super::complex::{pack, unpack, FACETS, NONE};
+use super::complex::{pack, unpack, FACETS, MOST_CELLS, NONE};
 use super::Conflict;
+use crate::error::Error;
 use crate::predicates::Counts;
 
 /// Boundary vertices up to which the table serves.
@@ -33,6 +34,8 @@ pub(super) struct Workspace {
     edges: Vec<(u64, u32)>,
     /// Vertices that lost all their cells (regular triangulations only).
     pub hidden: Vec<u32>,
+    /// Cells there may be: [`MOST_CELLS`], fewer in tests.
+    pub most: usize,
 }
 
 impl Workspace {
@@ -51,6 +54,7 @@ impl Workspace {
             table: vec![NONE; TABLE * TABLE],
             edges: Vec::new(),
             hidden: Vec::new(),
+            most: MOST_CELLS,
         }
     }
 
@@ -61,6 +65,10 @@ impl Workspace {
 
     /// Inserts site `p`, which lies in cell `start` (its boundary included);
     /// returns a cell at `p`, or `None` if `p` is hidden.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] when the star of `p` would not fit; nothing has
+    /// changed then.
     #[inline]
     pub fn insert<C: Conflict>(
         &mut self,
@@ -68,13 +76,14 @@ impl Workspace {
         p: u32,
         start: u32,
         counts: &mut Counts,
-    ) -> Option<u32> {
+    ) -> Result<Option<u32>, Error> {
         if !test.conflicts(self.cells[start as usize], p, counts) {
             debug_assert!(C::WEIGHTED, "a point in a cell lies in its sphere");
             self.hidden.push(p);
-            return None;
+            return Ok(None);
         }
         self.dig(test, p, start, counts);
+        self.has_room()?;
         self.number();
         if C::WEIGHTED {
             self.bury();
@@ -84,7 +93,24 @@ impl Workspace {
             self.local[v as usize] = NONE;
         }
         self.free.extend_from_slice(&self.cavity);
-        Some(last)
+        Ok(Some(last))
+    }
+
+    /// Whether a cell for each facet of the boundary fits.
+    #[inline]
+    fn has_room(&self) -> Result<(), Error> {
+        let slots = self
+            .cells
+            .len()
+            .max((self.cells.len() + self.boundary.len()).saturating_sub(self.free.len()));
+        if slots > self.most {
+            return Err(Error::TooLarge {
+                what: "the triangulation (its cells)",
+                count: slots as u64,
+                limit: self.most as u64,
+            });
+        }
+        Ok(())
     }
 
     /// Finds the conflicting cells and their boundary.

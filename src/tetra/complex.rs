@@ -8,6 +8,10 @@
 /// 'No such thing' among 32-bit ids.
 pub const NONE: u32 = u32::MAX;
 
+/// Cells there may be: with one more, a packed facet would wrap or be
+/// [`NONE`].
+pub const MOST_CELLS: usize = (1 << 30) - 1;
+
 /// The corners of facet `i`, such that `(i, FACETS[i]...)` is an even
 /// permutation: counterclockwise seen from vertex `i`'s side reversed, the
 /// same for all four.

@@ -4,19 +4,21 @@
 //!
 //! Every triangulation here lives inside a **frame**: eight sites at the
 //! corners of a cube that holds all others strictly inside. The cube is
-//! triangulated first ([`frame`]), its hull never changes, and no insertion
+//! triangulated first (`frame.rs`), its hull never changes, and no insertion
 //! ever leaves it: there are no infinite cells and no special cases for them.
 //! Since the perturbed weights of [`crate::predicates`] make the regular
 //! triangulation unique, the result does not depend on the order of insertion.
 
 mod build;
 mod cavity;
+mod check;
 mod complex;
 mod frame;
 pub mod order;
 
-pub use build::{triangulate, Triangulation};
-pub use complex::{facet_of, pack, unpack, Complex, FACETS, NONE};
+pub use build::{extend, locate, triangulate, Triangulation};
+pub use check::{check, Finding};
+pub use complex::{facet_of, pack, unpack, Complex, FACETS, MOST_CELLS, NONE};
 
 use crate::predicates::{conflict, conflict_weighted, orient, Counts, Sign, Site};
 

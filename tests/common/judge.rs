@@ -203,7 +203,9 @@ pub fn samples_off_the_crust(points: &[Point], result: &Reconstruction) -> Vec<(
     let Some(bounds) = Bounds::of(points) else {
         return Vec::new();
     };
-    let near = 1e-9 * bounds.diagonal();
+    // A sample that is no vertex lies in a face whose plane is as good as its
+    // balls' centres: 2^-32 of the box, divided by a small angle.
+    let near = 1e-7 * bounds.diagonal();
     let mut is_vertex = vec![false; result.sample_source.len()];
     for (vertex, &sample) in result.crust.vertex_samples.iter().enumerate() {
         if let Some(&source) = result.sample_source.get(sample as usize) {

@@ -19,7 +19,7 @@ use crate::geom::{Ball, Point};
 use crate::mesh::PolygonMesh;
 use crate::pipeline::{PolarBall, Reconstruction};
 
-use super::raw::{Crust, NONE};
+use crate::surface::raw::{Crust, NONE};
 
 /// The most input points that one vertex is blended from.
 pub const MOST: usize = 8;

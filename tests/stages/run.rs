@@ -1,0 +1,83 @@
+//! The stages one after the other, everything kept.
+
+use powercrust::delaunay::{delaunay, samples, Delaunay, Samples};
+use powercrust::label::{label, opposites, Evidence, LabelOptions, Labels, Neighbours, Opposite};
+use powercrust::poles::{poles, PoleOptions, Poles};
+use powercrust::power::{power_diagram, PowerDiagram};
+use powercrust::simplify::merge_redundant;
+use powercrust::surface::{raw_crust, Placement, RawCrust};
+use powercrust::{Ball, Context, Point, Side};
+
+pub struct Run {
+    pub samples: Samples,
+    pub delaunay: Delaunay,
+    /// The spacing at each sample, in lattice steps.
+    pub spacing: Vec<f64>,
+    pub poles: Poles,
+    /// The balls in steps of the samples' lattice.
+    pub balls: Vec<Ball>,
+    pub power: PowerDiagram,
+    pub neighbours: Neighbours,
+    pub opposites: Vec<Opposite>,
+    pub labels: Labels,
+}
+
+impl Run {
+    pub fn of(points: &[Point], merge: f64) -> Run {
+        let context = Context::default();
+        let samples = samples(points, 5.0).unwrap();
+        let delaunay = delaunay(&samples, &context).unwrap();
+        let poles = poles(&samples, &delaunay, &PoleOptions::default(), &context).unwrap();
+        let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, merge);
+        let step = poles.balls.lattice.step();
+        let power = power_diagram(&poles.balls.sites, step, &context).unwrap();
+        let balls = poles.balls.on_lattice();
+        let at: Vec<Point> = samples.sites.iter().map(position).collect();
+        let opposites = opposites(&poles.of_sample, &at, &balls);
+        let neighbours = Neighbours::of(&power);
+        let evidence = Evidence {
+            balls: &balls,
+            outer: &poles.balls.touches_frame,
+            opposites: &opposites,
+        };
+        let labels = label(&evidence, &neighbours, &LabelOptions::default(), &context).unwrap();
+        Run {
+            samples,
+            delaunay,
+            spacing,
+            poles,
+            balls,
+            power,
+            neighbours,
+            opposites,
+            labels,
+        }
+    }
+
+    pub fn evidence(&self) -> Evidence<'_> {
+        Evidence {
+            balls: &self.balls,
+            outer: &self.poles.balls.touches_frame,
+            opposites: &self.opposites,
+        }
+    }
+
+    /// The raw crust for any labels, positions in lattice steps.
+    pub fn raw(&self, sides: &[Side]) -> RawCrust {
+        let step = self.step();
+        let place = Placement {
+            touching: &|b| self.poles.balls.touching(b),
+            sample: &|s| position(&self.samples.sites[s as usize]),
+            to_user: &|p| p.map(|v| v * step),
+        };
+        raw_crust(&self.power, sides, &place)
+    }
+
+    pub fn step(&self) -> f64 {
+        self.poles.balls.lattice.step()
+    }
+}
+
+pub fn position(site: &[f64; 4]) -> Point {
+    [site[0], site[1], site[2]]
+}
