@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The rows, top first, and why each stands where it does.
-const ROWS: [(&[&str], &str); 12] = [
+const ROWS: [(&[&str], &str); 13] = [
     (
         &["geom", "context", "memory"],
         "plain values, what every long call receives, what the system tells",
