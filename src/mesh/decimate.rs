@@ -26,12 +26,13 @@ use std::collections::BinaryHeap;
 
 use super::bvh::Cuboid;
 use super::clash::{Clash, Reach};
+use super::corners::{centred, holds, incidences, next, previous, GONE};
 use super::moving::Moving;
 use super::quadric::Quadric;
-use super::{PolygonMesh, Surface};
+use super::PolygonMesh;
 use crate::context::{Cancelled, Context, Stage};
-use crate::geom::vec3::{cross, dot, norm, norm_sq, scale, sub};
-use crate::geom::{Bounds, Point};
+use crate::geom::vec3::{cross, dot, norm, norm_sq, sub};
+use crate::geom::Point;
 
 /// Least cosine of the angle by which one collapse may turn a face.
 const TURN: f64 = 0.3;
@@ -43,9 +44,6 @@ const SLIVER: f64 = 0.02;
 const LENGTH: f64 = 1e-6;
 /// Removed triangles between two looks at cancellation.
 const TICK: usize = 4096;
-/// No such face, corner or vertex.
-const GONE: u32 = u32::MAX;
-
 /// A mesh with fewer triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Decimated {
@@ -159,22 +157,6 @@ struct Work {
     ring: Vec<u32>,
     near: Vec<u32>,
     fan: Vec<[u32; 3]>,
-}
-
-fn next(c: u32) -> u32 {
-    if c % 3 == 2 {
-        c - 2
-    } else {
-        c + 1
-    }
-}
-
-fn previous(c: u32) -> u32 {
-    if c.is_multiple_of(3) {
-        c + 2
-    } else {
-        c - 1
-    }
 }
 
 impl Work {
@@ -474,127 +456,4 @@ impl Work {
         }
         out
     }
-}
-
-/// The twin of each half-edge and a corner at each vertex.
-fn incidences(corners: &[u32], vertices: usize) -> Result<(Vec<u32>, Vec<u32>), DecimateError> {
-    let mut edges: Vec<(u32, u32, u32)> = (0..corners.len() as u32)
-        .map(|c| {
-            let (a, b) = (corners[c as usize], corners[next(c) as usize]);
-            (a.min(b), a.max(b), c)
-        })
-        .collect();
-    edges.sort_unstable();
-    let mut twins = vec![GONE; corners.len()];
-    for group in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-        let &[(vertex, _, c), (_, _, d)] = group else {
-            return Err(DecimateError::NotManifold { vertex: group[0].0 });
-        };
-        if corners[c as usize] == corners[d as usize] {
-            return Err(DecimateError::NotManifold { vertex });
-        }
-        twins[c as usize] = d;
-        twins[d as usize] = c;
-    }
-    let mut corner_at = vec![GONE; vertices];
-    let mut left = vec![0u32; vertices];
-    for (c, &v) in corners.iter().enumerate() {
-        corner_at[v as usize] = c as u32;
-        left[v as usize] += 1;
-    }
-    // One fan at each vertex.
-    for (v, &start) in corner_at.iter().enumerate() {
-        let mut c = start;
-        while c != GONE {
-            left[v] -= 1;
-            c = twins[previous(c) as usize];
-            if c == start {
-                break;
-            }
-        }
-        if left[v] > 0 {
-            return Err(DecimateError::NotManifold { vertex: v as u32 });
-        }
-    }
-    Ok((twins, corner_at))
-}
-
-/// The points about the middle of their box, of size about 1.
-fn centred(points: &[Point]) -> Vec<Point> {
-    let Some(bounds) = Bounds::of(points) else {
-        return Vec::new();
-    };
-    let side = |k: usize| bounds.max[k] / 2.0 - bounds.min[k] / 2.0;
-    let size = side(0).max(side(1)).max(side(2));
-    let middle: Point = std::array::from_fn(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0);
-    let factor = if size > 0.0 { 1.0 / size } else { 1.0 };
-    points
-        .iter()
-        .map(|&p| scale(sub(p, middle), factor))
-        .collect()
-}
-
-/// Whether a tetrahedron holds a point, up to rounding.
-fn holds(t: &[Point; 4], p: Point) -> bool {
-    let volume =
-        |a: Point, b: Point, c: Point, d: Point| dot(cross(sub(b, a), sub(c, a)), sub(d, a));
-    let whole = volume(t[0], t[1], t[2], t[3]);
-    (0..4).all(|k| {
-        let mut part = *t;
-        part[k] = p;
-        volume(part[0], part[1], part[2], part[3]) * whole.signum() >= -1e-12 * whole.abs()
-    })
-}
-
-/// How far two surfaces are apart, in the units of the meshes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Deviation {
-    /// Mean distance from the middles of the faces of each to the other, by
-    /// area.
-    pub mean: f64,
-    /// Largest of these distances and those of the vertices.
-    pub max: f64,
-    /// The mean over the diagonal of the first mesh.
-    pub mean_of_diagonal: f64,
-    /// The largest over the diagonal of the first mesh.
-    pub max_of_diagonal: f64,
-}
-
-/// Measures how far the surfaces of two triangle meshes are apart.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn deviation(a: &PolygonMesh, b: &PolygonMesh, cx: &Context) -> Result<Deviation, Cancelled> {
-    let mut out = Deviation::default();
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for (from, to) in [(a, b), (b, a)] {
-        let surface = Surface::new(to);
-        let mut points = Vec::new();
-        let mut areas = Vec::new();
-        for t in super::triangles(from) {
-            let [p, q, r] = t.map(|v| from.vertices[v as usize]);
-            points.push(std::array::from_fn(|k| {
-                p[k] / 3.0 + q[k] / 3.0 + r[k] / 3.0
-            }));
-            areas.push(norm(cross(sub(q, p), sub(r, p))));
-        }
-        points.extend_from_slice(&from.vertices);
-        let distances = surface.distances(&points, cx)?;
-        out.max = distances.iter().fold(out.max, |m, &d| m.max(d));
-        sum += areas
-            .iter()
-            .zip(&distances)
-            .map(|(a, d)| a * d)
-            .sum::<f64>();
-        weights += areas.iter().sum::<f64>();
-    }
-    if weights > 0.0 {
-        out.mean = sum / weights;
-    }
-    let diagonal = Bounds::of(&a.vertices).map_or(0.0, |b| b.diagonal());
-    if diagonal > 0.0 {
-        out.mean_of_diagonal = out.mean / diagonal;
-        out.max_of_diagonal = out.max / diagonal;
-    }
-    Ok(out)
 }

@@ -7,8 +7,10 @@
 mod bvh;
 mod check;
 pub(crate) mod clash;
+mod corners;
 mod crossing;
 mod decimate;
+mod deviation;
 mod distance;
 mod frame;
 mod intersect;
@@ -23,7 +25,8 @@ mod topology;
 mod wide;
 
 pub use check::{check, CheckOptions};
-pub use decimate::{decimate, deviation, DecimateError, Decimated, Deviation};
+pub use decimate::{decimate, DecimateError, Decimated};
+pub use deviation::{deviation, Deviation};
 pub use distance::Surface;
 pub use measure::{component_volumes, components};
 pub use nesting::enclosing;
