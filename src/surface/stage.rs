@@ -102,9 +102,17 @@ impl Job<'_> {
         context.advance(Stage::Crust, 0, 3)?;
         let lattice = self.samples.lattice;
         let step = self.balls.lattice.step();
+        // Units at the ends of the range: products of lengths must not leave
+        // it. A power of two and back changes nothing.
+        let unit = lattice.length_to_user(lattice.sample_half);
+        let shift = match unit.is_normal() && !(1e-60..1e60).contains(&unit) {
+            true => -unit.log2().floor() as i32,
+            false => 0,
+        };
+        let times = |x: f64, e: i32| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2);
         let single = |p: Point| match options.single {
-            true => p.map(|x| f64::from(x as f32)),
-            false => p,
+            true => p.map(|x| times(f64::from(x as f32), shift)),
+            false => p.map(|x| times(x, shift)),
         };
         let place = Placement {
             touching: &|b| self.balls.touching(b),
@@ -131,16 +139,15 @@ impl Job<'_> {
                 Faces::Triangles => options.flatness,
                 Faces::Polygons => 0.0,
             },
-            single: options.single,
+            single: options.single && shift == 0,
             ball: &|b| {
                 let site = self.balls.sites.get(b as usize)?;
                 let centre = [site[0] * step, site[1] * step, site[2] * step];
-                Some(Ball::new(
-                    lattice.to_user(centre),
-                    lattice.length_to_user(site[3].sqrt() * step),
-                ))
+                let centre = lattice.to_user(centre).map(|x| times(x, shift));
+                let radius = lattice.length_to_user(site[3].sqrt() * step);
+                Some(Ball::new(centre, times(radius, shift)))
             },
-            spacing: &|s| lattice.length_to_user(self.spacing[s as usize]),
+            spacing: &|s| times(lattice.length_to_user(self.spacing[s as usize]), shift),
         };
         let mended = mend_crust(&triangles, &how, context)?;
         if first {
@@ -163,6 +170,10 @@ impl Job<'_> {
         }
         if crust.mesh.face_count() == 0 {
             return Err(self.nothing());
+        }
+        if shift != 0 {
+            let vertices = crust.mesh.vertices.iter_mut();
+            vertices.for_each(|p| *p = p.map(|x| times(x, -shift)));
         }
         stats.vertices = crust.mesh.vertices.len();
         stats.faces = crust.mesh.face_count();
