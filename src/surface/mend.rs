@@ -22,6 +22,12 @@
 //! - **Thin sheets.** Where two sheets pass closer than the surface moved in
 //!   the steps above, they can pierce each other.
 //!
+//! - **Plane faces.** Pieces of one power face that share no vertex lie in one
+//!   plane to the last bit. They do not meet, but tests that are not exact may
+//!   say so; vertices that are no samples leave the plane by a hair (`unlevel`).
+//!
+//! Before all that, power vertices are moved onto the surface (`mend_place`).
+//!
 //! What an exact search of all pairs still finds is mended on the spot by
 //! small changes that are kept only if the exact count of bad contacts falls
 //! (`mend_local`). A last resort is left to the caller, who knows the balls:
