@@ -24,7 +24,6 @@ pub struct Estimate {
 /// Predicts peak memory and time of a reconstruction from the number of
 /// points.
 ///
-/// The peak is when the surface is mended, with the power diagram still held:
 /// 3.2 KB a point and 6 MB for the process, by measurements on scans of 5,000
 /// to 360,000 points, which it meets within a quarter. Points that repeat
 /// others, or crowd where they say nothing new, take less. Time depends on the

@@ -15,7 +15,7 @@ use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::merge_redundant;
 use crate::stats::Stats;
 use crate::surface::stage::Job;
-use crate::surface::{power_shape, Crust, PowerShape};
+use crate::surface::{drop_inverted, power_shape, Crust, PowerShape};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,7 +155,13 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         power: &power,
         options,
     };
-    let crust = job.run(&mut sides, &mut stats, context)?;
+    let mut crust = job.run(&mut sides, &mut stats, context)?;
+    stats.inverted_shells = drop_inverted(&mut crust);
+    if stats.inverted_shells > 0 {
+        stats.vertices = crust.mesh.vertices.len();
+        stats.faces = crust.mesh.face_count();
+        stats.volume = crust.mesh.volume();
+    }
     let lattice = samples.lattice;
     let balls = on_lattice
         .iter()

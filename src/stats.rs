@@ -54,6 +54,8 @@ pub struct Stats {
     pub samples_lost: usize,
     /// Balls that changed sides because the surface crossed itself there.
     pub relabelled: usize,
+    /// Shells of the size of rounding errors that were inside out: taken out.
+    pub inverted_shells: usize,
     /// Faces written (triangles unless polygons were asked for).
     pub faces: usize,
     /// Vertices written.
@@ -103,6 +105,7 @@ impl Stats {
             flattened: 0,
             samples_lost: 0,
             relabelled: 0,
+            inverted_shells: 0,
             faces: 0,
             vertices: 0,
             volume: 0.0,

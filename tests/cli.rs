@@ -542,6 +542,7 @@ fn every_mesh_format() {
         ("off", "OFF"),
         ("stl", ""),
         ("json", "{"),
+        ("glb", "glTF"),
         ("PLY", "ply\n"),
     ] {
         let name = format!("crust.{extension}");
@@ -650,6 +651,245 @@ fn crossing_faces_are_counted_on_request() {
     assert_eq!(*crossing, judged["counts"]["crossing"]);
     assert_eq!(checked.json()["mesh"]["sound"], judged["ok"]);
     checked.says("verified");
+}
+
+/// The torus with a small sphere beside it: colours, normals, a class and a
+/// column of reals, as PLY.
+fn rich() -> String {
+    let torus = torus(600);
+    let ball = (0..120).map(|i| {
+        let z = 1.0 - (2 * i + 1) as f64 / 120.0;
+        let (ring, turn) = ((1.0 - z * z).sqrt(), 2.399_963_229_728_653 * f64::from(i));
+        let [x, y, z] = [ring * turn.cos(), ring * turn.sin(), z].map(|c| 0.2 * c);
+        format!("{} {y} {z}", x + 3.0)
+    });
+    let lines: Vec<String> = (torus.lines().map(str::to_owned))
+        .chain(ball)
+        .enumerate()
+        .map(|(i, p)| format!("{p} 0 0 1 {} 10 20 7 {}.5", i % 256, i % 9))
+        .collect();
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\n\
+         property double z\nproperty float nx\nproperty float ny\nproperty float nz\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nproperty int class\n\
+         property float quality\nend_header\n{}\n",
+        lines.len(),
+        lines.join("\n")
+    )
+}
+
+/// The head of a PLY file.
+fn ply_head(bytes: &[u8]) -> String {
+    let head = String::from_utf8_lossy(bytes);
+    head.split_once("end_header")
+        .expect("a PLY header")
+        .0
+        .to_owned()
+}
+
+#[test]
+fn values_of_the_input_are_kept() {
+    let place = Place::new();
+    place.put("rich.ply", rich());
+    place.run("rich.ply -o crust.ply").code(DONE);
+    let head = ply_head(&place.get("crust.ply"));
+    for property in [
+        "float nx",
+        "uchar red",
+        "int class",
+        "double quality",
+        "int sample",
+    ] {
+        assert!(
+            head.contains(&format!("property {property}\n")),
+            "{property}"
+        );
+    }
+    assert!(!head.contains("thickness"));
+    place
+        .run("rich.ply -o all.ply --attributes all --ascii")
+        .code(DONE);
+    let all = String::from_utf8(place.get("all.ply")).unwrap();
+    for property in [
+        "double thickness",
+        "double gap",
+        "int component",
+        "uchar hole",
+    ] {
+        assert!(
+            all.contains(&format!("property {property}\n")),
+            "{property}"
+        );
+    }
+    let second: Vec<&str> = all.split_once("end_header\n").unwrap().1.lines().collect();
+    assert!(second[0].contains(" 0 0 1 "), "{}", second[0]);
+    place
+        .run("rich.ply -o bare.ply --attributes none")
+        .code(DONE);
+    assert!(!ply_head(&place.get("bare.ply")).contains("sample"));
+    place
+        .run("rich.ply -o some.ply --attributes quality,hole")
+        .code(DONE);
+    let head = ply_head(&place.get("some.ply"));
+    assert!(head.contains("quality") && head.contains("hole") && !head.contains("red"));
+    // A surface is taken again as points, with all it carries.
+    place.run("crust.ply -o again.ply").code(DONE);
+    assert_eq!(
+        ply_head(&place.get("again.ply"))
+            .matches("int sample")
+            .count(),
+        1
+    );
+
+    place.run("rich.ply -o crust.obj").code(DONE);
+    let obj = String::from_utf8(place.get("crust.obj")).unwrap();
+    let vertex = obj.lines().find(|l| l.starts_with("v ")).unwrap();
+    assert_eq!(vertex.split_whitespace().count(), 7, "{vertex}");
+    assert!(obj.contains("\nvn ") && obj.contains("//"));
+    place.run("rich.ply -o crust.glb").code(DONE);
+    let glb = place.get("crust.glb");
+    let glb = String::from_utf8_lossy(&glb);
+    assert!(glb.starts_with("glTF") && glb.contains("COLOR_0") && glb.contains("NORMAL"));
+
+    place
+        .run("rich.ply -o crust.ply --attributes colour")
+        .fails(USAGE, "--attributes colour: the input has no such column")
+        .says("colours, thickness");
+    place
+        .run("rich.ply -o crust.obj --attributes hole")
+        .fails(USAGE, "OBJ files cannot hold it");
+    place
+        .run("rich.ply --mat a.ma --attributes all")
+        .fails(USAGE, "no effect");
+}
+
+#[test]
+fn parts_are_chosen_by_size() {
+    let place = Place::new();
+    place.put("rich.ply", rich());
+    let all = place.run("rich.ply -o crust.ply --json").code(DONE).json();
+    assert_eq!(all["mesh"]["components"], 2);
+    assert_eq!(all["mesh"]["cavities"], 0);
+    for filter in [
+        "--keep largest",
+        "--keep 1",
+        "--min-volume 5%",
+        "--min-volume 0.1",
+    ] {
+        let one = place
+            .run(&format!("rich.ply -o one.ply --json --verify {filter}"))
+            .code(DONE)
+            .json();
+        assert_eq!(one["mesh"]["components"], 1, "{filter}");
+        assert_eq!(one["dropped"]["components"], 1, "{filter}");
+        assert_eq!(one["mesh"]["genus"], 1, "{filter}");
+    }
+    place
+        .run("rich.ply -o one.ply --keep all --drop-cavities")
+        .code(DONE)
+        .says("2 components");
+    place
+        .run("rich.ply -o none.ply --min-volume 1000")
+        .fails(UNFIT, "nothing is left")
+        .says("the largest part encloses 3.");
+    for filter in [
+        "--keep 0",
+        "--keep few",
+        "--min-volume 101%",
+        "--min-volume -1",
+    ] {
+        place
+            .run(&format!("rich.ply -o none.ply {filter}"))
+            .fails(USAGE, filter.split(' ').next().unwrap());
+    }
+}
+
+#[test]
+fn triangles_are_reduced() {
+    let place = Place::with_torus();
+    let full = place.run("torus.xyz -o full.ply --json").code(DONE).json();
+    let from = full["mesh"]["faces"].as_u64().unwrap();
+    let ran = place
+        .run("torus.xyz -o less.ply --json --verify --reduce 2")
+        .code(DONE);
+    let less = ran.json();
+    assert_eq!(less["reduced"]["from"], from);
+    assert_eq!(less["reduced"]["faces"], less["mesh"]["faces"]);
+    assert!(less["mesh"]["faces"].as_u64().unwrap() <= from / 2);
+    assert_eq!(less["mesh"]["genus"], 1);
+    let moved = less["reduced"]["moved"]["mean_of_diagonal"]
+        .as_f64()
+        .unwrap();
+    assert!(moved < 0.005, "{moved}");
+    ran.says("% of the diagonal");
+    place.run("torus.xyz -o some.ply --faces 300 -q").code(DONE);
+    assert_eq!(ply_counts(&place.get("some.ply"))[1], 300);
+    // As far as it goes, and said so: a torus needs 14.
+    place
+        .run("torus.xyz -o least.ply --faces 4")
+        .code(DONE)
+        .says("not fewer (4 asked for)");
+    for flags in [
+        "--reduce 1",
+        "--faces 3",
+        "--faces 9 --reduce 2",
+        "--faces 9 --polygons",
+    ] {
+        place
+            .run(&format!("torus.xyz -o some.ply {flags}"))
+            .fails(USAGE, "--");
+    }
+}
+
+#[test]
+fn what_a_run_takes_is_told_and_limited() {
+    let place = Place::with_torus();
+    let told = place.run("torus.xyz --dry-run").code(DONE);
+    let text = String::from_utf8(told.stdout).unwrap();
+    assert!(text.starts_with("torus.xyz: 600 points: about "), "{text}");
+    assert!(text.contains("MiB of memory"), "{text}");
+    let told = place
+        .run("torus.xyz -o crust.ply --dry-run --json --max-memory 1G")
+        .code(DONE)
+        .json();
+    assert_eq!(told["points"], 600);
+    assert!(told["estimate"]["memory_bytes"].as_u64().unwrap() > 1_000_000);
+    for also in ["", " --dry-run"] {
+        place
+            .run(&format!("torus.xyz -o crust.ply --max-memory 1M{also}"))
+            .fails(UNFIT, "more than --max-memory 1.0 MiB");
+    }
+    assert_eq!(place.names(), ["torus.xyz"]);
+    place
+        .run("torus.xyz -o crust.ply --max-memory much")
+        .fails(USAGE, "expected a size");
+    let stats = place.run("torus.xyz --stats - -q").code(DONE).json();
+    if cfg!(target_os = "linux") {
+        assert!(stats["peak_memory_bytes"].as_u64().unwrap() > 1_000_000);
+    }
+}
+
+#[test]
+fn what_is_written_is_verified() {
+    let place = Place::with_torus();
+    for name in ["crust.ply", "crust.stl", "crust.glb", "crust.obj"] {
+        place
+            .run(&format!("torus.xyz -o {name} --verify"))
+            .code(DONE)
+            .says("verified");
+    }
+    place.run("torus.xyz -o f.ply --f32 --verify").code(DONE);
+    place.run("check f.ply").code(DONE);
+    place.run("check crust.stl").code(DONE);
+    // One digit is too few for this surface.
+    place
+        .run("torus.xyz -o coarse.obj --precision 1 --verify")
+        .fails(UNFIT, "not sound as it would be written")
+        .says("nothing was written");
+    assert!(!place.names().contains(&"coarse.obj".to_owned()));
+    place
+        .run("check crust.glb")
+        .fails(FILE, "GLB cannot be read");
 }
 
 #[test]

@@ -188,7 +188,7 @@ pub struct Reconstruct {
 
     /// Drop parts and fill cavities smaller than this: a volume in the cube of
     /// the input's unit, or a share of the total such as 1%.
-    #[arg(long, value_name = "V", value_parser = wanted::min_volume, help_heading = SURFACE)]
+    #[arg(long, value_name = "V", value_parser = wanted::min_volume, allow_hyphen_values = true, help_heading = SURFACE)]
     pub min_volume: Option<MinVolume>,
 
     /// Fill all cavities, with what lies in them.

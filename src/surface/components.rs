@@ -111,6 +111,13 @@ impl Anatomy {
         parts.min_by(|&a, &b| self.volumes[a].total_cmp(&self.volumes[b]))
     }
 
+    /// Whether a shell looks the wrong way for where it lies: no solid has it
+    /// on its boundary. Rounding does that to shells next to nothing in size.
+    fn is_inverted(&self, shell: usize) -> bool {
+        let depth = self.around[shell].as_ref().map(Vec::len);
+        depth.is_some_and(|depth| self.is_cavity(shell) != (depth % 2 == 1))
+    }
+
     /// Parts from the largest to the smallest.
     fn by_size(&self) -> Vec<usize> {
         let mut parts: Vec<usize> = (0..self.len()).filter(|&s| !self.is_cavity(s)).collect();
@@ -174,6 +181,14 @@ impl Anatomy {
         }
         kept
     }
+
+    /// The surface of the shells kept.
+    fn select(&self, crust: &Crust, kept: &[bool]) -> (Crust, Selection) {
+        let faces = (self.shell_of_face.iter().enumerate())
+            .filter(|(_, &s)| kept.get(s as usize).copied().unwrap_or(false))
+            .map(|(f, _)| f as u32);
+        crust.select_faces(faces.collect())
+    }
 }
 
 impl Shells {
@@ -205,11 +220,21 @@ impl Shells {
 /// ```
 pub fn filter_shells(crust: &Crust, filter: &ShellFilter) -> (Crust, Selection) {
     let anatomy = Anatomy::of(&crust.mesh);
-    let kept = anatomy.kept(filter);
-    let faces = (anatomy.shell_of_face.iter().enumerate())
-        .filter(|(_, &s)| kept.get(s as usize).copied().unwrap_or(false))
-        .map(|(f, _)| f as u32);
-    crust.select_faces(faces.collect())
+    anatomy.select(crust, &anatomy.kept(filter))
+}
+
+/// Takes out shells that are inside out for where they lie, and says how many
+/// there were.
+pub(crate) fn drop_inverted(crust: &mut Crust) -> usize {
+    let anatomy = Anatomy::of(&crust.mesh);
+    let kept: Vec<bool> = (0..anatomy.len())
+        .map(|s| !anatomy.is_inverted(s))
+        .collect();
+    let dropped = kept.iter().filter(|&&k| !k).count();
+    if dropped > 0 {
+        *crust = anatomy.select(crust, &kept).0;
+    }
+    dropped
 }
 
 impl Crust {
@@ -303,6 +328,18 @@ mod tests {
         assert_eq!(cavities, [(216.0, 0), (8.0, 1)]);
         assert_eq!(shells.part_of_face[..12], [0; 12]);
         assert_eq!(shells.part_of_face[12..], [1; 12]);
+    }
+
+    #[test]
+    fn shells_inside_out_are_taken_out() {
+        let mut sound = boxes(&ONION);
+        assert_eq!(drop_inverted(&mut sound), 0);
+        assert_eq!(sound.mesh.face_count(), 24);
+        let mut crust = boxes(&[(4.0, false), (3.0, false), (0.5, true)]);
+        // The box of 3 and the one in it both contradict the one around.
+        assert_eq!(drop_inverted(&mut crust), 2);
+        assert_eq!(crust.mesh.vertices.len(), 8);
+        assert_eq!(crust.mesh.volume(), 512.0);
     }
 
     #[test]

@@ -30,6 +30,7 @@ mod triangulate;
 mod unfold;
 
 pub use clean::{clean, CleanOptions};
+pub(crate) use components::drop_inverted;
 pub use components::{filter_shells, Keep, MinVolume, Selection, ShellFilter, Shells};
 pub use extract::{raw_crust, Placement};
 pub use mend::{mend_crust, MendOptions, Mending};
