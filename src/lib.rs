@@ -1,5 +1,64 @@
 //! Watertight surfaces and medial axes from point clouds by the power crust
 //! (Amenta, Choi and Kolluri 2001).
+//!
+//! ```
+//! use powercrust::{reconstruct, Context, Options, Side};
+//! # let points: Vec<[f64; 3]> = (0..400).map(|k| {
+//! #     let (z, a) = ((k as f64 + 0.5) / 200.0 - 1.0, k as f64 * 2.399963);
+//! #     let r = (1.0 - z * z).sqrt();
+//! #     [r * a.cos(), r * a.sin(), z]
+//! # }).collect();
+//! let result = reconstruct(&points, &Options::default(), &Context::default())?;
+//! println!("{} triangles", result.crust.mesh.face_count());
+//! let axis = result.power_shape(Side::Inner);
+//! # assert!((result.crust.mesh.volume() - 4.1).abs() < 0.1);
+//! # assert!(!axis.balls.is_empty());
+//! # Ok::<(), powercrust::Error>(())
+//! ```
+//!
+//! # Catalogue
+//!
+//! **The whole way**
+//! - [`reconstruct`]: points in, [`Reconstruction`] out
+//! - [`Options`], [`Faces`]: what may be said; the default says nothing
+//! - [`Context`], [`Progress`], [`Silent`], [`Stage`], [`Cancelled`]: threads, progress, a stop button
+//! - [`Error`], [`SampleError`]: why there is no surface
+//! - [`Stats`]: counts, timings, options of a run
+//!
+//! **Results**
+//! - [`Crust`]: the surface, its samples, the balls at its faces
+//! - [`PowerShape`]: a medial axis as balls, edges, triangles, tetrahedra
+//! - [`PolarBall`], [`Ball`], [`Side`]: the balls and their labels
+//! - [`PolygonMesh`], [`Point`], [`Bounds`]: plain geometry
+//! - [`attributes`]: colours, normals and values of the input on the surface, thickness and holes on its faces
+//!
+//! **One stage at a time** (section 5 of the paper)
+//! - [`delaunay::samples`]: finite, distinct points on a lattice
+//! - [`delaunay::delaunay`]: their Delaunay triangulation
+//! - [`poles::poles`]: poles and polar balls, the skinniness test
+//! - [`simplify::merge_redundant`]: one ball for many that say the same
+//! - [`power::power_diagram`]: the regular triangulation of balls
+//! - [`label::label`], [`label::refine`], [`label::energy`], [`label::hold`]: inner or outer
+//! - [`surface::raw_crust`], [`surface::clean`], [`surface::triangulate`]: the surface between unlike cells
+//! - [`surface::power_shape`]: the axis among like balls
+//!
+//! **Meshes**
+//! - [`mesh::check`]: is a mesh closed, manifold, oriented and free of crossings? Exact
+//! - [`mesh::components`], [`mesh::component_volumes`], [`mesh::enclosing`]: its parts
+//! - [`mesh::Surface`]: distances to it
+//!
+//! **Files**
+//! - [`io::read_cloud`], [`io::read_mesh`], [`io::read_axis`], [`io::read_balls`]
+//! - [`io::write_mesh`], [`io::write_axis`], [`io::write_balls`]
+//!
+//! **Kernel**
+//! - [`predicates`]: orientation, in-sphere, in-power-sphere: filter, exact, perturbed
+//! - [`tetra`]: cells, walk, cavity, order
+//! - [`memory`]: what a run takes
+//!
+//! # Features
+//! `cli` (default) builds the command; libraries turn it off with
+//! `default-features = false`.
 
 pub mod attributes;
 pub mod context;

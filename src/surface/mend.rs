@@ -22,6 +22,12 @@
 //! - **Thin sheets.** Where two sheets pass closer than the surface moved in
 //!   the steps above, they can pierce each other.
 //!
+//! - **Plane faces.** Pieces of one power face that share no vertex lie in one
+//!   plane to the last bit. They do not meet, but tests that are not exact may
+//!   say so; vertices that are no samples leave the plane by a hair (`unlevel`).
+//!
+//! Before all that, power vertices are moved onto the surface (`mend_place`).
+//!
 //! What an exact search of all pairs still finds is mended on the spot by
 //! small changes that are kept only if the exact count of bad contacts falls
 //! (`mend_local`). A last resort is left to the caller, who knows the balls:
@@ -30,7 +36,7 @@
 //! cell is inside no surface is left.
 
 use super::mend_coarsen::{coarsen, Coarsened};
-use super::mend_local::mend;
+use super::mend_local::{mend, Mended, LEVELS};
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
 use super::mend_place::{settle, unlevel};
@@ -108,9 +114,9 @@ pub fn mend_crust(
     let mut mesh = TriMesh::new(crust, points, source);
     let shells = Shells::of(&mesh);
     let mut done = Mending::default();
+    let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
+    let spacing = spread(&mesh, |s| length((options.spacing)(s)));
     if options.flatness > 0.0 {
-        let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
-        let spacing = spread(&mesh, |s| length((options.spacing)(s)));
         let radii = radii(&mesh, |t| {
             let balls = crust.face_balls[t as usize].iter().filter(|&&b| b != NONE);
             let radii = balls.filter_map(|&b| Some(length((options.ball)(b)?.radius)));
@@ -141,13 +147,24 @@ pub fn mend_crust(
     let tree = clash.tree(&mesh.points, &mesh.tris);
     let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
     done.found = pairs.len();
-    let (first, mut left) = mend(&mut mesh, &clash, tree, pairs, 0.0, &round, cx)?;
+    let gentle = LEVELS - 1;
+    let (first, mut left) = mend(&mut mesh, &clash, tree, pairs, 0.0, gentle, &round, cx)?;
+    let mut more = Mended::default();
+    if !left.is_empty() {
+        // Around what resists the mesh may be coarser, before samples go.
+        let tolerance = around(&mesh, &left, &spacing);
+        coarsen(&mut mesh, &tolerance, cx)?;
+        let tree = clash.tree(&mesh.points, &mesh.tris);
+        let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
+        (more, left) = mend(&mut mesh, &clash, tree, pairs, 0.0, LEVELS, &round, cx)?;
+    }
     if left.is_empty() {
         let least = least_area(&mesh);
         let pairs = thin(&mesh, least);
         if !pairs.is_empty() {
             let tree = clash.tree(&mesh.points, &mesh.tris);
-            let (second, mut rest) = mend(&mut mesh, &clash, tree, pairs, least, &round, cx)?;
+            let (second, mut rest) =
+                mend(&mut mesh, &clash, tree, pairs, least, gentle, &round, cx)?;
             // What is no worse than thin may stay.
             rest.retain(|&(s, t)| s != t || clash.is_flat(&mesh.place(s)));
             left = rest;
@@ -155,9 +172,9 @@ pub fn mend_crust(
         }
         done.samples_lost += shells.take_out_reversed(&mut mesh, &clash);
     }
-    done.changes += first.changes;
-    done.samples_lost += first.samples_lost;
-    done.rounds = first.rounds;
+    done.changes += first.changes + more.changes;
+    done.samples_lost += more.samples_lost;
+    done.rounds = first.rounds + more.rounds;
     done.left = left.iter().map(|&(s, t)| [s, t]).collect();
     // The triangles left are told by the faces they come from.
     for pair in &mut done.left {
@@ -167,6 +184,26 @@ pub fn mend_crust(
     done.crust = mended;
     done.source = source;
     Ok(done)
+}
+
+/// How far the surface may move near triangles that resist: nowhere else.
+fn around(mesh: &TriMesh, pairs: &[(u32, u32)], spacing: &[f64]) -> Vec<f64> {
+    let mut tolerance = vec![0.0; spacing.len()];
+    let mut fan = Vec::new();
+    let triangles = pairs.iter().flat_map(|&(s, t)| [s, t]);
+    let mut front: Vec<u32> = triangles.flat_map(|t| mesh.tris[t as usize]).collect();
+    for _ in 0..3 {
+        for k in 0..front.len() {
+            mesh.fan(front[k], &mut fan);
+            front.extend(fan.iter().map(|&h| mesh.head(h)));
+        }
+        front.sort_unstable();
+        front.dedup();
+    }
+    for v in front {
+        tolerance[v as usize] = MOST * spacing[v as usize];
+    }
+    tolerance
 }
 
 /// The least radius of the balls whose cells meet at each vertex.

@@ -8,18 +8,18 @@
 //! ends. It widens from the pair to its neighbours, and in the end lets
 //! samples go that lie in a tangle nothing else undoes.
 
-use super::mend_coarsen::area;
+use super::mend_coarsen::{area, point_triangle_sq};
 use super::mend_mesh::{prev, TriMesh};
 use super::mend_shell::is_thin;
 use super::raw::NONE;
 use crate::context::{Cancelled, Context, Stage};
-use crate::geom::vec3::{add, norm, scale, sub};
+use crate::geom::vec3::{add, cross, dot, norm, scale, sub};
 use crate::geom::Point;
 use crate::mesh::clash::{Clash, Reach, Tree};
 use std::collections::BTreeSet;
 
 /// How wide the search goes, in steps of escalation.
-const LEVELS: usize = 4;
+pub(crate) const LEVELS: usize = 4;
 /// The tree is made anew when this many triangles changed since.
 const STALE: usize = 4096;
 
@@ -33,6 +33,9 @@ pub(crate) struct Mended {
     pub rounds: usize,
 }
 
+/// What a length along the surface costs beside one off it.
+const EVEN: f64 = 1e-3;
+
 /// A change that can be tried.
 #[derive(Clone, Copy, Debug)]
 enum Change {
@@ -43,7 +46,8 @@ enum Change {
 
 /// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles. `round` rounds a new position as
 /// the file will hold it. Triangles count as bad whose vector area is not
-/// above `thin`; with 0 those that have exactly none. Tells the pairs that are
+/// above `thin`; with 0 those that have exactly none. With fewer `levels` than
+/// [`LEVELS`] no sample goes. Tells the pairs that are
 /// left.
 pub(crate) fn mend(
     mesh: &mut TriMesh,
@@ -51,6 +55,7 @@ pub(crate) fn mend(
     tree: Tree,
     pairs: Vec<(u32, u32)>,
     thin: f64,
+    levels: usize,
     round: &dyn Fn(Point) -> Point,
     cx: &Context,
 ) -> Result<(Mended, Vec<(u32, u32)>), Cancelled> {
@@ -72,8 +77,6 @@ pub(crate) fn mend(
     };
     work.learn(&pairs);
     let mut queue = pairs;
-    // Samples do not go for a thin triangle.
-    let levels = if thin > 0.0 { LEVELS - 1 } else { LEVELS };
     for level in 0..levels {
         done.rounds += 1;
         let mut stuck = Vec::new();
@@ -297,7 +300,17 @@ impl Work<'_> {
                     return None;
                 }
                 touched = self.fan.iter().map(|h| h / 3).collect();
-                cost = norm(sub(self.mesh.at(from), self.mesh.at(to)));
+                let p = self.mesh.at(from);
+                let off = self.fan.iter().map(|h| {
+                    let corners = self.mesh.tris[*h as usize / 3];
+                    let ends = corners.map(|v| if v == from { to } else { v });
+                    match ends.iter().filter(|&&v| v == to).count() {
+                        1 => point_triangle_sq(p, &ends.map(|v| self.mesh.at(v))),
+                        _ => f64::INFINITY,
+                    }
+                });
+                let off = off.fold(f64::INFINITY, f64::min).sqrt();
+                cost = off + EVEN * norm(sub(p, self.mesh.at(to)));
             }
             Change::Flip(h) => {
                 if !self.mesh.can_flip(h) {
@@ -306,12 +319,16 @@ impl Work<'_> {
                 let twin = self.mesh.twin(h);
                 let ends = [prev(h), prev(twin)].map(|g| self.mesh.at(self.mesh.tail(g)));
                 touched = vec![h / 3, twin / 3];
-                cost = norm(sub(ends[0], ends[1]));
+                let [u, v] = [h, twin].map(|g| self.mesh.at(self.mesh.tail(g)));
+                let across = sub(ends[0], ends[1]);
+                let normal = cross(sub(v, u), across);
+                let size = norm(normal).max(f64::MIN_POSITIVE);
+                cost = dot(sub(ends[0], u), normal).abs() / size + EVEN * norm(across);
             }
             Change::Shift(v, p) => {
                 self.mesh.fan(v, &mut self.fan);
                 touched = self.fan.iter().map(|h| h / 3).collect();
-                cost = 2.0 * norm(sub(self.mesh.at(v), p));
+                cost = norm(sub(self.mesh.at(v), p));
             }
         }
         touched.sort_unstable();

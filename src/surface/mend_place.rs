@@ -21,6 +21,10 @@ use rayon::prelude::*;
 /// The least cosine between normals that agree.
 const AGREE: f64 = 0.9;
 
+/// Triangles less high than this share of their longest side are needles,
+/// whose own normals say nothing.
+const NEEDLE: f64 = 0.1;
+
 /// Moves vertices that are no samples by at most `limit`; `outward` tells the
 /// direction across each triangle. Returns how many moved.
 pub(crate) fn settle(
@@ -42,9 +46,13 @@ pub(crate) fn settle(
     }
     let normals: Vec<Point> = sums.iter().map(|&s| unit(s)).collect();
     let mut smooth = vec![true; normals.len()];
-    for (tri, n) in mesh.tris.iter().zip(&across) {
+    for (t, (tri, n)) in mesh.tris.iter().zip(&across).enumerate() {
+        let (own, longest) = area(&mesh.place(t as u32));
+        let size = norm(own);
         for &v in tri {
-            let agrees = n.is_some_and(|n| dot(n, normals[v as usize]) >= AGREE);
+            let normal = normals[v as usize];
+            let agrees = n.is_some_and(|n| dot(n, normal) >= AGREE)
+                && (size < NEEDLE * longest || dot(own, normal) >= AGREE * size);
             smooth[v as usize] &= agrees;
         }
     }
