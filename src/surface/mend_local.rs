@@ -44,11 +44,13 @@ enum Change {
     Shift(u32, Point),
 }
 
-/// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles. `round` rounds a new position as
-/// the file will hold it. Triangles count as bad whose vector area is not
-/// above `thin`; with 0 those that have exactly none. With fewer `levels` than
-/// [`LEVELS`] no sample goes. Tells the pairs that are
-/// left.
+/// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles.
+/// `round` rounds a new position as the file will hold it. Triangles count as
+/// bad whose vector area is not above `thin`; with 0 those that have exactly
+/// none. With fewer `levels` than [`LEVELS`] no sample goes. Tells the pairs
+/// that are left.
+// Each is a different thing; a struct would only be taken apart again.
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn mend(
     mesh: &mut TriMesh,
     clash: &Clash,
