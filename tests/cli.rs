@@ -224,6 +224,8 @@ fn reals_out_of_range() {
         ("--box-factor 1.4", "--box-factor is 1.4"),
         ("--merge -1e-9", "--merge is -0.000000001"),
         ("--merge 2", "--merge is 2"),
+        ("--flatness 11", "--flatness is 11"),
+        ("--interpolate maybe", "expected yes or no"),
         ("--threads 0", "--threads"),
         ("--precision 0", "--precision"),
         ("--precision 18", "--precision"),
@@ -1171,6 +1173,7 @@ fn readme_and_help_agree() {
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     for default in [
         format!("by default {}", plain.merge),
+        format!("by default {}", plain.flatness),
         format!("by default {}", plain.box_factor),
         format!("default {:.2}", plain.deep_angle),
     ] {

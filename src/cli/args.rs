@@ -171,6 +171,18 @@ pub struct Reconstruct {
     #[arg(long, help = merge_help(), value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub merge: Option<f64>,
 
+    #[arg(long, help = flatness_help(), value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub flatness: Option<f64>,
+
+    /// Whether the surface must pass through every sample: yes, no.
+    ///
+    /// At edges the poles of a sample can leave it off the surface; `yes`
+    /// adds balls that bring it back. By default that is done unless more
+    /// than 5 % of the samples are off, which is taken for noise, and not
+    /// with --sharp.
+    #[arg(long, value_name = "WHETHER", value_parser = yes_or_no, help_heading = METHOD)]
+    pub interpolate: Option<bool>,
+
     /// Write triangles (this is the default).
     #[arg(long, overrides_with = "polygons", help_heading = METHOD)]
     pub triangulate: bool,
@@ -322,6 +334,19 @@ fn box_factor_help() -> String {
 fn merge_help() -> String {
     let default = Options::default().merge;
     format!("Merge balls when the surface moves by less than this share of the sampling error: 0 to 1, by default {default}")
+}
+
+fn flatness_help() -> String {
+    let default = Options::default().flatness;
+    format!("Drop vertices that are no samples when the surface moves by less than this share of the sampling error: 0 to 10, by default {default}")
+}
+
+fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err("expected yes or no".to_owned()),
+    }
 }
 
 /// Reads a finite number. (clap's own reading of negative numbers refuses

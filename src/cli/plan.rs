@@ -260,13 +260,14 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         deep_angle: args.deep_angle.unwrap_or(plain.deep_angle),
         box_factor: args.box_factor.unwrap_or(plain.box_factor),
         merge: args.merge.unwrap_or(plain.merge),
+        flatness: args.flatness.unwrap_or(plain.flatness),
+        interpolate: args.interpolate,
         faces: if args.polygons {
             Faces::Polygons
         } else {
             Faces::Triangles
         },
         single: args.f32,
-        ..plain
     };
     match options.validate() {
         Ok(()) => Ok(options),
