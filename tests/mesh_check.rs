@@ -854,3 +854,33 @@ fn speed() {
         );
     }
 }
+
+/// Found by fuzzing: volumes out of the range of doubles were 0 or NaN, and
+/// sound meshes were judged inside out.
+#[test]
+fn volumes_out_of_range_keep_their_sign() {
+    let cavity = join(&cube(0, 9), &flipped(&cube(3, 3)));
+    for (scale, judged) in [
+        (1e-322, 0.0),
+        (1e-300, 0.0),
+        (1.0, 702.0),
+        (1e120, f64::MAX),
+        (1e306, f64::MAX),
+    ] {
+        let mut scaled = cavity.clone();
+        for x in scaled.vertices.iter_mut().flatten() {
+            *x *= scale;
+        }
+        let report = judge(&scaled);
+        assert!(report.is_embedded() && report.cavities == 1, "{scale}");
+        assert!(
+            (report.volume - judged).abs() <= 1e-300 && report.volume > 0.0,
+            "{scale}"
+        );
+        assert_eq!(report.smallest_angle.map(f64::round), Some(45.0));
+        let volumes = component_volumes(&scaled);
+        assert!(volumes[0] > 0.0 && volumes[1] < 0.0, "{scale}");
+        let report = judge(&flipped(&scaled));
+        assert!(!report.is_watertight() && report.volume < 0.0, "{scale}");
+    }
+}

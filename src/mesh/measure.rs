@@ -28,17 +28,20 @@ pub(super) struct Shape {
 const ASPECTS: [f64; 6] = [2.0, 4.0, 10.0, 100.0, 1e3, 1e4];
 
 /// Volume and area of each of `count` sets of faces, `label` telling the set
-/// of a face. Volumes are taken about `origin`.
+/// of a face, in the units of [`Frame::enter_sizes`]: in the mesh's a volume
+/// may be out of range and lose its sign. Volumes are taken about `origin`.
 pub(super) fn sizes(
     points: &[Point],
     origin: Point,
+    frame: &Frame,
     triangles: &Triangles,
     label: &[u32],
     count: usize,
 ) -> Vec<Size> {
     let mut sizes = vec![Size::default(); count];
+    let origin = frame.enter_sizes(origin);
     for (&t, &f) in triangles.corners.iter().zip(&triangles.face) {
-        let [a, b, c] = place(points, t).map(|p| sub(p, origin));
+        let [a, b, c] = place(points, t).map(|p| sub(frame.enter_sizes(p), origin));
         let normal = cross(sub(b, a), sub(c, a));
         let size = &mut sizes[label[f as usize] as usize];
         size.volume += dot(a, normal) / 6.0;
@@ -48,13 +51,13 @@ pub(super) fn sizes(
 }
 
 /// Smallest angle and the histogram of aspects of all triangles.
-pub(super) fn shape(points: &[Point], triangles: &Triangles) -> Shape {
+pub(super) fn shape(points: &[Point], frame: &Frame, triangles: &Triangles) -> Shape {
     let mut shape = Shape {
         smallest_angle: None,
         aspects: [0; 7],
     };
     for &t in &triangles.corners {
-        let [a, b, c] = place(points, t);
+        let [a, b, c] = place(points, t).map(|p| frame.enter_sizes(p));
         let mut sides = [sub(c, b), sub(a, c), sub(b, a)];
         let doubled = norm(cross(sides[1], sides[2]));
         sides.sort_by(|x, y| norm_sq(*x).total_cmp(&norm_sq(*y)));
@@ -121,14 +124,16 @@ pub fn component_volumes(mesh: &PolygonMesh) -> Vec<f64> {
     let faces = Faces::of(mesh, |_, _| ());
     let topology = Topology::of(mesh.vertices.len(), &faces);
     let origin = middle(&finite_bounds(mesh.vertices.iter()));
+    let frame = Frame::new(&mesh.vertices);
     sizes(
         &mesh.vertices,
         origin,
-        &faces.triangles(&Frame::new(&mesh.vertices)),
+        &frame,
+        &faces.triangles(&frame),
         &topology.shell,
         topology.shell_edges.len(),
     )
     .iter()
-    .map(|s| s.volume)
+    .map(|s| frame.leave_size(s.volume, 3))
     .collect()
 }
