@@ -109,6 +109,11 @@ impl Frame {
         p.map(|x| shift(x, self.unit))
     }
 
+    /// The power of two that takes volumes of the mesh's units to those.
+    pub fn volume_unit(&self) -> i32 {
+        3 * self.unit
+    }
+
     /// A length (1), area (2) or volume (3) in those units, in the mesh's. Out
     /// of the range of doubles it is the nearest of its sign.
     pub fn leave_size(&self, size: f64, dimension: u32) -> f64 {
@@ -122,9 +127,9 @@ impl Frame {
 }
 
 /// `x` times two to the power `e`, for powers beyond the range of doubles too.
-fn shift(x: f64, e: i32) -> f64 {
-    let half = e / 2;
-    x * 2f64.powi(half) * 2f64.powi(e - half)
+pub(super) fn shift(x: f64, e: i32) -> f64 {
+    let third = e / 3;
+    x * 2f64.powi(third) * 2f64.powi(third) * 2f64.powi(e - 2 * third)
 }
 
 fn sign(x: f64) -> i8 {

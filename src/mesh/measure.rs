@@ -3,6 +3,7 @@
 use super::frame::Frame;
 use super::soup::{place, Faces, Triangles};
 use super::topology::Topology;
+use super::wide::Sum;
 use super::PolygonMesh;
 use crate::geom::vec3::{cross, dot, norm, norm_sq, sub};
 use crate::geom::{Bounds, Point};
@@ -39,6 +40,8 @@ pub(super) fn sizes(
     count: usize,
 ) -> Vec<Size> {
     let mut sizes = vec![Size::default(); count];
+    // Bounds of what the terms of each volume may be off by, over epsilon.
+    let mut doubts = vec![(0.0, 0.0); count];
     let origin = frame.enter_sizes(origin);
     for (&t, &f) in triangles.corners.iter().zip(&triangles.face) {
         let [a, b, c] = place(points, t).map(|p| sub(frame.enter_sizes(p), origin));
@@ -46,8 +49,48 @@ pub(super) fn sizes(
         let size = &mut sizes[label[f as usize] as usize];
         size.volume += dot(a, normal) / 6.0;
         size.area += norm(normal) / 2.0;
+        let (terms, count) = &mut doubts[label[f as usize] as usize];
+        *terms += norm(a) * norm(sub(b, a)) * norm(sub(c, a));
+        *count += 1.0;
     }
+    settle(points, frame, triangles, label, &doubts, &mut sizes);
     sizes
+}
+
+/// Sums volumes again, exactly, that are not far larger than what they may be
+/// off by: their terms cancel in thin and in tiny shells.
+fn settle(
+    points: &[Point],
+    frame: &Frame,
+    triangles: &Triangles,
+    label: &[u32],
+    doubts: &[(f64, f64)],
+    sizes: &mut [Size],
+) {
+    let doubtful = |(size, &(terms, count)): (&Size, &(f64, f64))| {
+        let bound = (count + 16.0) * f64::EPSILON * terms;
+        size.volume.is_finite() && size.volume.abs() <= 1e3 * bound
+    };
+    let mut sums: Vec<Option<Box<Sum>>> = (sizes.iter().zip(doubts))
+        .map(|pair| doubtful(pair).then(|| Box::new(Sum::new())))
+        .collect();
+    if sums.iter().all(Option::is_none) {
+        return;
+    }
+    for (&t, &f) in triangles.corners.iter().zip(&triangles.face) {
+        let corners = place(points, t);
+        if let Some(sum) = &mut sums[label[f as usize] as usize] {
+            sum.add_det(corners);
+        }
+    }
+    for (size, sum) in sizes.iter_mut().zip(sums) {
+        if let Some(sum) = sum {
+            size.volume = sum.value(frame.volume_unit()) / 6.0;
+            if size.volume == 0.0 && sum.sign() != 0 {
+                size.volume = f64::from_bits(1).copysign(f64::from(sum.sign()));
+            }
+        }
+    }
 }
 
 /// Smallest angle and the histogram of aspects of all triangles.
