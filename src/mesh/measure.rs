@@ -67,29 +67,29 @@ fn settle(
     doubts: &[(f64, f64)],
     sizes: &mut [Size],
 ) {
-    let doubtful = |(size, &(terms, count)): (&Size, &(f64, f64))| {
-        let bound = (count + 16.0) * f64::EPSILON * terms;
-        size.volume.is_finite() && size.volume.abs() <= 1e3 * bound
-    };
-    let mut sums: Vec<Option<Box<Sum>>> = (sizes.iter().zip(doubts))
-        .map(|pair| doubtful(pair).then(|| Box::new(Sum::new())))
+    let doubtful: Vec<bool> = (sizes.iter().zip(doubts))
+        .map(|(size, &(terms, count))| {
+            let bound = (count + 16.0) * f64::EPSILON * terms;
+            // Fewer than four triangles enclose nothing.
+            count > 3.0 && size.volume.is_finite() && size.volume.abs() <= 1e3 * bound
+        })
         .collect();
-    if sums.iter().all(Option::is_none) {
-        return;
-    }
-    for (&t, &f) in triangles.corners.iter().zip(&triangles.face) {
-        let corners = place(points, t);
-        if let Some(sum) = &mut sums[label[f as usize] as usize] {
-            sum.add_det(corners);
+    let shell = |t: u32| label[triangles.face[t as usize] as usize];
+    let mut some: Vec<u32> = (0..triangles.corners.len() as u32)
+        .filter(|&t| doubtful[shell(t) as usize])
+        .collect();
+    some.sort_by_key(|&t| shell(t));
+    for run in some.chunk_by(|&t, &u| shell(t) == shell(u)) {
+        let mut sum = Sum::new();
+        for &t in run {
+            sum.add_det(place(points, triangles.corners[t as usize]));
         }
-    }
-    for (size, sum) in sizes.iter_mut().zip(sums) {
-        if let Some(sum) = sum {
-            size.volume = sum.value(frame.volume_unit()) / 6.0;
-            if size.volume == 0.0 && sum.sign() != 0 {
-                size.volume = f64::from_bits(1).copysign(f64::from(sum.sign()));
-            }
-        }
+        let volume = sum.value(frame.volume_unit()) / 6.0;
+        // A sixth of the smallest number there is would be zero.
+        sizes[shell(run[0]) as usize].volume = match (volume, sum.sign()) {
+            (0.0, sign @ (-1 | 1)) => f64::from_bits(1).copysign(f64::from(sign)),
+            _ => volume,
+        };
     }
 }
 
