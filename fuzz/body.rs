@@ -44,10 +44,7 @@ fn cloud(bytes: &[u8], format: CloudFormat) {
     CloudFormat::sniff(bytes);
     let mut counts = Vec::new();
     for skip_invalid in [false, true] {
-        let options = ReadOptions {
-            skip_invalid,
-            ..ReadOptions::default()
-        };
+        let options = ReadOptions { skip_invalid };
         match read_cloud(bytes, format, &options) {
             Ok(cloud) => {
                 let n = cloud.points.len();

@@ -148,7 +148,7 @@ fn integer_clouds() {
 #[test]
 fn spheres() {
     // Many points on one sphere: all of one Delaunay cell, but for rounding.
-    family("spheres", 80, vec(on_sphere(), 6..120));
+    family("spheres", 60, vec(on_sphere(), 6..120));
 }
 
 #[test]
