@@ -235,7 +235,7 @@ fn nothing_panics_on_broken_arrays() {
     broken(&|m| m.vertices.clear());
     broken(&|m| m.vertices[1] = [f64::INFINITY, f64::NAN, -0.0]);
     broken(&|m| m.vertices.fill([f64::MAX; 3]));
-    broken(&|m| m.vertices[3] = [f64::MAX, -f64::MAX, f64::MIN_POSITIVE]);
+    broken(&|m| m.vertices[3] = [f64::MAX, -f64::MAX, -f64::MIN_POSITIVE]);
 }
 
 #[test]
@@ -852,5 +852,86 @@ fn speed() {
             points.len(),
             start.elapsed(),
         );
+    }
+}
+
+/// Found by `scripts/guarantee`: in floating point the volume of a shell that
+/// is thin or tiny drowns in rounding, and its sign with it.
+#[test]
+fn thin_shells_are_told_from_shells_inside_out() {
+    let ulp = 2f64.powi(-52);
+    for n in 0..60 {
+        let at = |k: i32| 1.0 + f64::from(n * 7919 % 61) / 61.0 / f64::from(k);
+        // One unit in the last place thick, and flat but for rounding.
+        let a = [at(1), at(2), at(3)];
+        let b = [at(4), at(5) + 0.25, at(6)];
+        let c = [at(7), at(8), at(9) + 0.25];
+        let mid: Point = std::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0);
+        let mut points = vec![
+            a,
+            b,
+            c,
+            [mid[0] + ulp * f64::from(n % 5 - 2), mid[1], mid[2]],
+        ];
+        points.extend(CORNER.map(|p| p.map(|x| f64::from(x) * 1e-17 - 3.0 * f64::from(x))));
+        let sign = exact_orientation([points[0], points[1], points[2], points[3]]);
+        let mut thin = PolygonMesh::with_vertices(points);
+        TETRAHEDRON.iter().for_each(|f| thin.push_face(f));
+        TETRAHEDRON
+            .iter()
+            .for_each(|f| thin.push_face(&f.map(|v| v + 4)));
+        let volumes = component_volumes(&thin);
+        assert_eq!(sign, volumes[0].partial_cmp(&0.0).unwrap() as i128, "{n}");
+    }
+}
+
+/// The sign of the volume of a tetrahedron whose coordinates are multiples of
+/// 2^-52 below 4, its faces as in [`TETRAHEDRON`].
+fn exact_orientation(points: [Point; 4]) -> i128 {
+    let whole = points.map(|p| p.map(|x| (x * 2f64.powi(52)) as i128));
+    let [u, v, w] = [1, 2, 3].map(|k| [0, 1, 2].map(|i| whole[k][i] - whole[0][i]));
+    // Differences have 55 bits: split, so that no product overflows.
+    let minors = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
+    let (mut high, mut low) = (0, 0);
+    for (m, x) in minors.into_iter().zip(w) {
+        high += (m >> 60) * x;
+        low += (m & ((1 << 60) - 1)) * x;
+    }
+    let whole = high + (low >> 60);
+    let rest = low & ((1 << 60) - 1);
+    if whole == 0 {
+        i128::from(rest != 0)
+    } else {
+        whole.signum()
+    }
+}
+
+/// Found by fuzzing: volumes out of the range of doubles were 0 or NaN, and
+/// sound meshes were judged inside out.
+#[test]
+fn volumes_out_of_range_keep_their_sign() {
+    let cavity = join(&cube(0, 9), &flipped(&cube(3, 3)));
+    for (scale, judged) in [
+        (1e-322, 0.0),
+        (1e-300, 0.0),
+        (1.0, 702.0),
+        (1e120, f64::MAX),
+        (1e306, f64::MAX),
+    ] {
+        let mut scaled = cavity.clone();
+        for x in scaled.vertices.iter_mut().flatten() {
+            *x *= scale;
+        }
+        let report = judge(&scaled);
+        assert!(report.is_embedded() && report.cavities == 1, "{scale}");
+        assert!(
+            (report.volume - judged).abs() <= 1e-300 && report.volume > 0.0,
+            "{scale}"
+        );
+        assert_eq!(report.smallest_angle.map(f64::round), Some(45.0));
+        let volumes = component_volumes(&scaled);
+        assert!(volumes[0] > 0.0 && volumes[1] < 0.0, "{scale}");
+        let report = judge(&flipped(&scaled));
+        assert!(!report.is_watertight() && report.volume < 0.0, "{scale}");
     }
 }

@@ -6,14 +6,75 @@ use super::error::{Place, ReadError, WriteError};
 use super::sink::{check_count, check_finite, FaceSink};
 use crate::mesh::PolygonMesh;
 use crate::surface::{PowerShape, NONE};
-use serde::de::DeserializeOwned;
+use serde::de::{Deserialize, DeserializeOwned, DeserializeSeed, Deserializer, SeqAccess, Visitor};
+use std::fmt;
 use std::io::Write;
 
 #[derive(serde::Deserialize)]
 struct MeshFile {
     vertices: Vec<[f64; 3]>,
     #[serde(default)]
-    faces: Vec<Vec<i64>>,
+    faces: Corners,
+}
+
+/// Lists of indices one after the other: a list for each face would take many
+/// times the memory of the file.
+#[derive(Default)]
+struct Corners {
+    indices: Vec<i64>,
+    /// Where each list ends.
+    ends: Vec<usize>,
+}
+
+impl<'de> Deserialize<'de> for Corners {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Corners, D::Error> {
+        let mut all = Corners::default();
+        source.deserialize_seq(Faces(&mut all))?;
+        Ok(all)
+    }
+}
+
+/// Reads the list of faces.
+struct Faces<'a>(&'a mut Corners);
+
+impl<'de> Visitor<'de> for Faces<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a sequence")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut faces: A) -> Result<(), A::Error> {
+        while faces.next_element_seed(Face(self.0))?.is_some() {}
+        Ok(())
+    }
+}
+
+/// Reads one face.
+struct Face<'a>(&'a mut Corners);
+
+impl<'de> DeserializeSeed<'de> for Face<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, source: D) -> Result<(), D::Error> {
+        source.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Face<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a sequence")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut corners: A) -> Result<(), A::Error> {
+        while let Some(corner) = corners.next_element()? {
+            self.0.indices.push(corner);
+        }
+        self.0.ends.push(self.0.indices.len());
+        Ok(())
+    }
 }
 
 #[derive(serde::Deserialize)]
@@ -54,8 +115,11 @@ pub fn read_mesh(bytes: &[u8]) -> Result<PolygonMesh, ReadError> {
     }
     check_finite(&file.vertices, |i| Place::Record(i as u64))?;
     let mut faces = FaceSink::keeping();
-    for (f, face) in file.faces.iter().enumerate() {
+    let mut start = 0;
+    for (f, &end) in file.faces.ends.iter().enumerate() {
+        let face = &file.faces.indices[start..end];
         faces.push(face, count, Place::Record(f as u64))?;
+        start = end;
     }
     let mut mesh = faces.mesh.unwrap_or_default();
     mesh.vertices = file.vertices;

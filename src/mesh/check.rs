@@ -8,7 +8,7 @@
 
 use super::crossing::{coincidences, crossings, flat, Crossings, Field, Kind};
 use super::frame::Frame;
-use super::measure::{finite_bounds, middle, shape, sizes};
+use super::measure::{finite_bounds, middle, shape, sizes, Size};
 use super::nesting;
 use super::report::{Counts, Finding, Report, Shell};
 use super::soup::{Faces, Fault, Triangles};
@@ -166,8 +166,16 @@ fn judge(
     let used = (0..points.len()).filter(|&v| topology.fans[v] > 0);
     let used_count = used.clone().count();
     let bounds = finite_bounds(used.map(|v| &points[v]));
-    let shells = shells(points, middle(&bounds), &faces, &triangles, &topology);
-    let shape = shape(points, &triangles);
+    let sizes = sizes(
+        points,
+        middle(&bounds),
+        &frame,
+        &triangles,
+        &topology.shell,
+        topology.shell_edges.len(),
+    );
+    let mut shells = shells(&sizes, &faces, &topology);
+    let shape = shape(points, &frame, &triangles);
     let volume: f64 = shells.iter().map(|s| s.volume).sum();
     let mut depths = None;
     if o.intersections {
@@ -181,6 +189,10 @@ fn judge(
         }
     }
     inside_out(&shells, volume, depths, &mut ledger);
+    for shell in &mut shells {
+        shell.volume = frame.leave_size(shell.volume, 3);
+        shell.area = frame.leave_size(shell.area, 2);
+    }
     Ok(Report {
         vertices: points.len() as u64,
         faces: mesh.face_count() as u64,
@@ -193,8 +205,8 @@ fn judge(
         components: u64::from(topology.components),
         euler: used_count as i64 - topology.edges as i64 + faces.len() as i64,
         genus: shells.iter().map(|s| s.genus).sum(),
-        volume,
-        area: shells.iter().map(|s| s.area).sum(),
+        volume: frame.leave_size(volume, 3),
+        area: frame.leave_size(sizes.iter().map(|s| s.area).sum(), 2),
         cavities: shells.iter().filter(|s| s.closed && s.volume < 0.0).count() as u64,
         shells,
         bounds,
@@ -333,15 +345,9 @@ fn enter_crossings(faces: &Faces, found: Crossings, ledger: &mut Ledger) {
     }
 }
 
-fn shells(
-    points: &[Point],
-    origin: Point,
-    faces: &Faces,
-    triangles: &Triangles,
-    topology: &Topology,
-) -> Vec<Shell> {
+/// The shells, their sizes still in the frame's units.
+fn shells(sizes: &[Size], faces: &Faces, topology: &Topology) -> Vec<Shell> {
     let count = topology.shell_edges.len();
-    let sizes = sizes(points, origin, triangles, &topology.shell, count);
     let loops = topology.loops(faces);
     let mut shells: Vec<Shell> = (0..count)
         .map(|s| Shell {

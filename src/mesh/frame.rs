@@ -30,6 +30,8 @@ pub(super) struct Frame {
     pub kernel: Kernel,
     /// `points` are the vertices times two to this power.
     exponent: i32,
+    /// Times two to this power magnitudes lie below one, whatever is rounded.
+    unit: i32,
 }
 
 /// The arithmetic that decides signs, by the range of the coordinates.
@@ -87,6 +89,7 @@ impl Frame {
             points,
             kernel,
             exponent,
+            unit: if top == i32::MIN { 0 } else { -top },
         }
     }
 
@@ -99,12 +102,34 @@ impl Frame {
     pub fn leave(&self, length: f64) -> f64 {
         shift(length, -self.exponent)
     }
+
+    /// A point in units in which no size overflows, and none that matters
+    /// underflows. They are those of the frame, but for [`Kernel::Extreme`].
+    pub fn enter_sizes(&self, p: Point) -> Point {
+        p.map(|x| shift(x, self.unit))
+    }
+
+    /// The power of two that takes volumes of the mesh's units to those.
+    pub fn volume_unit(&self) -> i32 {
+        3 * self.unit
+    }
+
+    /// A length (1), area (2) or volume (3) in those units, in the mesh's. Out
+    /// of the range of doubles it is the nearest of its sign.
+    pub fn leave_size(&self, size: f64, dimension: u32) -> f64 {
+        let own = (0..dimension).fold(size, |x, _| shift(x, -self.unit));
+        match own {
+            0.0 if size != 0.0 => f64::from_bits(1).copysign(size),
+            _ if own.is_infinite() && size.is_finite() => f64::MAX.copysign(size),
+            _ => own,
+        }
+    }
 }
 
 /// `x` times two to the power `e`, for powers beyond the range of doubles too.
-fn shift(x: f64, e: i32) -> f64 {
-    let half = e / 2;
-    x * 2f64.powi(half) * 2f64.powi(e - half)
+pub(super) fn shift(x: f64, e: i32) -> f64 {
+    let third = e / 3;
+    x * 2f64.powi(third) * 2f64.powi(third) * 2f64.powi(e - 2 * third)
 }
 
 fn sign(x: f64) -> i8 {

@@ -3,6 +3,7 @@
 use super::frame::Frame;
 use super::soup::{place, Faces, Triangles};
 use super::topology::Topology;
+use super::wide::Sum;
 use super::PolygonMesh;
 use crate::geom::vec3::{cross, dot, norm, norm_sq, sub};
 use crate::geom::{Bounds, Point};
@@ -28,33 +29,78 @@ pub(super) struct Shape {
 const ASPECTS: [f64; 6] = [2.0, 4.0, 10.0, 100.0, 1e3, 1e4];
 
 /// Volume and area of each of `count` sets of faces, `label` telling the set
-/// of a face. Volumes are taken about `origin`.
+/// of a face, in the units of [`Frame::enter_sizes`]: in the mesh's a volume
+/// may be out of range and lose its sign. Volumes are taken about `origin`.
 pub(super) fn sizes(
     points: &[Point],
     origin: Point,
+    frame: &Frame,
     triangles: &Triangles,
     label: &[u32],
     count: usize,
 ) -> Vec<Size> {
     let mut sizes = vec![Size::default(); count];
+    // Bounds of what the terms of each volume may be off by, over epsilon.
+    let mut doubts = vec![(0.0, 0.0); count];
+    let origin = frame.enter_sizes(origin);
     for (&t, &f) in triangles.corners.iter().zip(&triangles.face) {
-        let [a, b, c] = place(points, t).map(|p| sub(p, origin));
+        let [a, b, c] = place(points, t).map(|p| sub(frame.enter_sizes(p), origin));
         let normal = cross(sub(b, a), sub(c, a));
         let size = &mut sizes[label[f as usize] as usize];
         size.volume += dot(a, normal) / 6.0;
         size.area += norm(normal) / 2.0;
+        let (terms, count) = &mut doubts[label[f as usize] as usize];
+        *terms += norm(a) * norm(sub(b, a)) * norm(sub(c, a));
+        *count += 1.0;
     }
+    settle(points, frame, triangles, label, &doubts, &mut sizes);
     sizes
 }
 
+/// Sums volumes again, exactly, that are not far larger than what they may be
+/// off by: their terms cancel in thin and in tiny shells.
+fn settle(
+    points: &[Point],
+    frame: &Frame,
+    triangles: &Triangles,
+    label: &[u32],
+    doubts: &[(f64, f64)],
+    sizes: &mut [Size],
+) {
+    let doubtful: Vec<bool> = (sizes.iter().zip(doubts))
+        .map(|(size, &(terms, count))| {
+            let bound = (count + 16.0) * f64::EPSILON * terms;
+            // Fewer than four triangles enclose nothing.
+            count > 3.0 && size.volume.is_finite() && size.volume.abs() <= 1e3 * bound
+        })
+        .collect();
+    let shell = |t: u32| label[triangles.face[t as usize] as usize];
+    let mut some: Vec<u32> = (0..triangles.corners.len() as u32)
+        .filter(|&t| doubtful[shell(t) as usize])
+        .collect();
+    some.sort_by_key(|&t| shell(t));
+    for run in some.chunk_by(|&t, &u| shell(t) == shell(u)) {
+        let mut sum = Sum::new();
+        for &t in run {
+            sum.add_det(place(points, triangles.corners[t as usize]));
+        }
+        let volume = sum.value(frame.volume_unit()) / 6.0;
+        // A sixth of the smallest number there is would be zero.
+        sizes[shell(run[0]) as usize].volume = match (volume, sum.sign()) {
+            (0.0, sign @ (-1 | 1)) => f64::from_bits(1).copysign(f64::from(sign)),
+            _ => volume,
+        };
+    }
+}
+
 /// Smallest angle and the histogram of aspects of all triangles.
-pub(super) fn shape(points: &[Point], triangles: &Triangles) -> Shape {
+pub(super) fn shape(points: &[Point], frame: &Frame, triangles: &Triangles) -> Shape {
     let mut shape = Shape {
         smallest_angle: None,
         aspects: [0; 7],
     };
     for &t in &triangles.corners {
-        let [a, b, c] = place(points, t);
+        let [a, b, c] = place(points, t).map(|p| frame.enter_sizes(p));
         let mut sides = [sub(c, b), sub(a, c), sub(b, a)];
         let doubled = norm(cross(sides[1], sides[2]));
         sides.sort_by(|x, y| norm_sq(*x).total_cmp(&norm_sq(*y)));
@@ -121,14 +167,16 @@ pub fn component_volumes(mesh: &PolygonMesh) -> Vec<f64> {
     let faces = Faces::of(mesh, |_, _| ());
     let topology = Topology::of(mesh.vertices.len(), &faces);
     let origin = middle(&finite_bounds(mesh.vertices.iter()));
+    let frame = Frame::new(&mesh.vertices);
     sizes(
         &mesh.vertices,
         origin,
-        &faces.triangles(&Frame::new(&mesh.vertices)),
+        &frame,
+        &faces.triangles(&frame),
         &topology.shell,
         topology.shell_edges.len(),
     )
     .iter()
-    .map(|s| s.volume)
+    .map(|s| frame.leave_size(s.volume, 3))
     .collect()
 }

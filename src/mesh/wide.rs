@@ -13,14 +13,14 @@ use crate::geom::Point;
 
 /// Exponent of the lowest bit a product of three doubles can have.
 const LOWEST: i32 = -3 * 1074;
-/// 32-bit digits from that bit up to the carries of 24 largest products.
+/// 32-bit digits from that bit up to the carries of 2^32 largest products.
 const DIGITS: usize = ((3 * 1074 + 3 * 1024 + 64) / 32) as usize;
 
 /// A sum of products of up to three doubles, kept exactly.
-struct Sum([i64; DIGITS]);
+pub(super) struct Sum([i64; DIGITS]);
 
 impl Sum {
-    fn new() -> Sum {
+    pub fn new() -> Sum {
         Sum([0; DIGITS])
     }
 
@@ -55,7 +55,7 @@ impl Sum {
         }
     }
 
-    fn sign(&self) -> i8 {
+    pub fn sign(&self) -> i8 {
         let (mut carry, mut nonzero) = (0i64, false);
         for &digit in &self.0 {
             let value = digit + carry;
@@ -67,6 +67,42 @@ impl Sum {
             0 if !nonzero => 0,
             _ => 1,
         }
+    }
+}
+
+impl Sum {
+    /// Adds `det(a, b, c)`: all six terms of all faces make six volumes.
+    pub fn add_det(&mut self, [a, b, c]: [Point; 3]) {
+        for (odd, [i, j, k]) in [
+            (false, [0, 1, 2]),
+            (false, [1, 2, 0]),
+            (false, [2, 0, 1]),
+            (true, [0, 2, 1]),
+            (true, [2, 1, 0]),
+            (true, [1, 0, 2]),
+        ] {
+            self.add(odd, a[i], b[j], c[k]);
+        }
+    }
+
+    /// The sum times two to the power `exponent`, rounded, but for a sum that
+    /// is not zero never to zero.
+    pub fn value(&self, exponent: i32) -> f64 {
+        let sign = self.sign();
+        let (mut carry, mut digits) = (0i64, [0u32; DIGITS]);
+        for (digit, own) in digits.iter_mut().zip(&self.0) {
+            let value = if sign < 0 { carry - own } else { carry + own };
+            *digit = value as u32;
+            carry = value >> 32;
+        }
+        let Some(top) = digits.iter().rposition(|&d| d != 0) else {
+            return 0.0;
+        };
+        let from = top.saturating_sub(3);
+        let leading =
+            (digits[from..=top].iter().rev()).fold(0u128, |n, &d| n << 32 | u128::from(d));
+        let size = super::frame::shift(leading as f64, LOWEST + 32 * from as i32 + exponent);
+        size.max(f64::from_bits(1)) * f64::from(sign)
     }
 }
 
