@@ -35,6 +35,14 @@ pub enum Error {
         /// How many there may be.
         limit: u64,
     },
+    /// 32-bit coordinates were asked for where they cannot tell points apart.
+    #[error("32-bit coordinates are {step:e} apart this far from the origin, the points spread over {extent:e}: keep 64 bits, or move the points nearer to the origin")]
+    Single {
+        /// Distance between neighbouring 32-bit numbers there.
+        step: f64,
+        /// Largest side of the bounding box.
+        extent: f64,
+    },
     /// The caller's progress handler stopped the work.
     #[error("cancelled")]
     Cancelled,

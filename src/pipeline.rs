@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::context::{Context, Stage};
-use crate::delaunay::{delaunay, samples};
+use crate::delaunay::{delaunay, samples, Lattice};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{
@@ -88,6 +88,9 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.points = points.len();
     stats.samples = samples.len();
     stats.duplicates = points.len() - samples.len();
+    if options.single {
+        resolves(&samples.lattice)?;
+    }
     clock.lap(Stage::Samples, &mut stats);
     let delaunay = delaunay(&samples, context)?;
     stats.delaunay_cells = delaunay.complex.len();
@@ -191,6 +194,17 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     })
 }
 
+/// Whether 32-bit coordinates tell a thousand places apart across the samples.
+fn resolves(lattice: &Lattice) -> Result<(), Error> {
+    let extent = 2.0 * lattice.length_to_user(lattice.sample_half);
+    let farthest = lattice.centre.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let step = farthest * f64::from(f32::EPSILON);
+    if step * 1000.0 > extent {
+        return Err(Error::Single { step, extent });
+    }
+    Ok(())
+}
+
 /// Measures the stages.
 struct Clock(Instant);
 
@@ -204,5 +218,28 @@ impl Clock {
         let seconds = now.duration_since(self.0).as_secs_f64();
         stats.seconds.push((stage.name().to_string(), seconds));
         self.0 = now;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn single_precision_far_from_the_origin_is_refused() {
+        let far = |k: u32| {
+            [
+                f64::from(k % 3),
+                f64::from(k / 3 % 3),
+                9e13 + f64::from(k / 9),
+            ]
+        };
+        let points: Vec<Point> = (0..27).map(far).collect();
+        let options = Options {
+            single: true,
+            ..Options::default()
+        };
+        let error = reconstruct(&points, &options, &Context::default()).unwrap_err();
+        assert!(matches!(error, Error::Single { .. }), "{error}");
     }
 }
