@@ -156,7 +156,7 @@ fn pipeline(bytes: &[u8]) {
     }
     let result = match reconstruct(&points, &options, &Context::default()) {
         Ok(result) => result,
-        Err(Error::Samples(_) | Error::NothingInside { .. }) => return,
+        Err(Error::Samples(_) | Error::NothingInside { .. } | Error::Single { .. }) => return,
         Err(other) => panic!("{other}"),
     };
     let judge = CheckOptions {

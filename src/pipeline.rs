@@ -194,12 +194,12 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     })
 }
 
-/// Whether 32-bit coordinates tell a thousand places apart across the samples.
+/// Whether 32-bit coordinates tell a hundred places apart across the samples.
 fn resolves(lattice: &Lattice) -> Result<(), Error> {
     let extent = 2.0 * lattice.length_to_user(lattice.sample_half);
     let farthest = lattice.centre.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let step = farthest * f64::from(f32::EPSILON);
-    if step * 1000.0 > extent {
+    if step * 100.0 > extent {
         return Err(Error::Single { step, extent });
     }
     Ok(())

@@ -162,7 +162,7 @@ fn fault(seed: u64) -> Option<String> {
     let options = options(seed);
     let result = match reconstruct(&points, &options, &Context::default()) {
         Ok(result) => result,
-        Err(Error::Samples(_) | Error::NothingInside { .. }) => return None,
+        Err(Error::Samples(_) | Error::NothingInside { .. } | Error::Single { .. }) => return None,
         Err(other) => return Some(format!("seed {seed} ({kind}): {other}")),
     };
     let judge = CheckOptions {
