@@ -60,6 +60,8 @@
 //! `cli` (default) builds the command; libraries turn it off with
 //! `default-features = false`.
 
+#![forbid(unsafe_code)]
+
 pub mod attributes;
 pub mod context;
 pub mod delaunay;
