@@ -1,5 +1,7 @@
 //! Counts, timings and options of one run: the content of `--stats`.
 
+use std::time::Instant;
+
 use crate::label::{Energy, Held};
 use crate::options::Options;
 use crate::predicates::Counts;
@@ -33,7 +35,8 @@ pub struct Stats {
     pub held: Held,
     /// Cells of the regular triangulation, sentinels included.
     pub power_cells: usize,
-    /// Power faces between inner and outer cells, before clean-up.
+    /// Power faces between inner and outer cells, but those that lie at one
+    /// sample, before clean-up.
     pub power_faces: usize,
     /// Polygons of the crust.
     pub polygons: usize,
@@ -74,6 +77,9 @@ pub struct Stats {
     pub power_predicates: Counts,
     /// Seconds by stage, in order.
     pub seconds: Vec<(String, f64)>,
+    /// Seconds by part of a stage, `crust: extract` for one, in order. Parts
+    /// need not add up to their stage.
+    pub part_seconds: Vec<(String, f64)>,
     /// Every option used.
     pub options: Options,
 }
@@ -115,7 +121,20 @@ impl Stats {
             delaunay_predicates: Counts::default(),
             power_predicates: Counts::default(),
             seconds: Vec::new(),
+            part_seconds: Vec::new(),
             options: options.clone(),
+        }
+    }
+
+    /// Counts the time since `clock` for a part of a stage, and starts the
+    /// clock again.
+    pub(crate) fn part(&mut self, name: &str, clock: &mut Instant) {
+        let now = Instant::now();
+        let seconds = now.duration_since(*clock).as_secs_f64();
+        *clock = now;
+        match self.part_seconds.iter_mut().find(|(part, _)| part == name) {
+            Some((_, total)) => *total += seconds,
+            None => self.part_seconds.push((name.to_string(), seconds)),
         }
     }
 }

@@ -15,13 +15,19 @@
 //!    (`short`) and faces narrower than it sewn up.
 //! 4. Opposite faces that coincide cancel; double edges are cut (`pinch`).
 //! 5. Fans are numbered: they are the vertices.
+//!
+//! Nearly all faces have an area and visit no place twice, nearly all fans
+//! are alone at their place and meet each neighbour once. One pass over the
+//! faces and one over the fans see that; what fails is rare and goes the
+//! general way.
 
-use super::contract::{half_edges, Places};
-use super::flat::Tailor;
+use super::contract::Places;
+use super::flat::{has_area, Tailor};
 use super::halfedges::HalfEdges;
-use super::pinch::{remove_opposite_faces, separate, split_double_edges};
-use super::raw::{Crust, RawCrust, NONE};
+use super::pinch::{remove_opposite_faces, repeats, separate, split_double_edges, Fans};
+use super::raw::{Crust, RawCrust};
 use super::short::contract_short_edges;
+use crate::geom::Point;
 use crate::mesh::PolygonMesh;
 
 /// How far clean-up may move the surface; the default not at all.
@@ -37,59 +43,93 @@ pub struct CleanOptions {
     pub gap: f64,
 }
 
-/// Cleans up a raw crust. The faces keep the order of the raw faces they
-/// come from.
+/// Cleans up a raw crust. The faces come in the order of their first
+/// half-edges.
 pub fn clean(raw: RawCrust, options: &CleanOptions) -> Crust {
-    let (places, place_of) = Places::of(&raw);
-    let mut surface = half_edges(&raw, &place_of);
-    drop(place_of);
-    let RawCrust { starts, balls, .. } = raw;
-
-    let mut tailor = Tailor::new(&places, 0.0, &surface);
-    for ends in starts.windows(2).filter(|ends| ends[0] < ends[1]) {
-        tailor.settle(&mut surface, ends[0]);
-    }
-    if options.tolerance > 0.0 {
-        contract_short_edges(&mut surface, &places, options.tolerance, |surface, h| {
-            tailor.settle(surface, h)
-        });
-        tailor.tolerance = options.tolerance;
-        for h in surface.faces() {
-            tailor.settle(&mut surface, h);
-        }
-    }
-    drop(tailor);
-    remove_opposite_faces(&mut surface);
-    split_double_edges(&mut surface);
-    finish(&surface, &places, &balls, options.gap)
+    clean_counted(raw, options).0
 }
 
-fn finish(surface: &HalfEdges, places: &Places, balls: &[[u32; 2]], gap: f64) -> Crust {
-    let (fan, count) = surface.fans();
-    let mut vertex_samples = vec![NONE; count as usize];
-    for h in (0..surface.len() as u32).filter(|&h| surface.alive(h)) {
-        vertex_samples[fan[h as usize] as usize] = places.samples[surface.tail(h) as usize];
-    }
-    // Half-edges made late lie behind all others: sort by raw face.
-    let mut firsts: Vec<(u32, u32)> = surface
-        .faces()
-        .iter()
-        .map(|&h| (surface.face[h as usize], h))
-        .collect();
-    firsts.sort_unstable();
-    let mut mesh = PolygonMesh::with_vertices(separate(surface, places, &fan, count, gap));
-    let mut face_balls = Vec::with_capacity(firsts.len());
-    for &(face, first) in &firsts {
-        let mut h = first;
-        loop {
-            mesh.corners.push(fan[h as usize]);
-            h = surface.next(h);
-            if h == first {
-                break;
+/// The same, and the number of raw faces.
+pub(crate) fn clean_counted(raw: RawCrust, options: &CleanOptions) -> (Crust, usize) {
+    let (places, mut surface) = Places::of(raw);
+    let (odd, count) = odd_faces(&mut surface, &places);
+    if !odd.is_empty() || options.tolerance > 0.0 {
+        let mut tailor = Tailor::new(&places, 0.0, &surface);
+        for h in odd {
+            tailor.settle(&mut surface, h);
+        }
+        if options.tolerance > 0.0 {
+            contract_short_edges(&mut surface, &places, options.tolerance, |surface, h| {
+                tailor.settle(surface, h)
+            });
+            tailor.tolerance = options.tolerance;
+            for h in surface.faces() {
+                tailor.settle(&mut surface, h);
             }
         }
+    }
+    let mut fans = Fans::of(&surface, places.positions.len());
+    if !fans.odd.is_empty() {
+        remove_opposite_faces(&mut surface, &fans);
+        split_double_edges(&mut surface);
+        fans = Fans::of(&surface, places.positions.len());
+    }
+    (finish(&surface, &places, fans, options.gap), count)
+}
+
+/// Removes faces of two edges and lists those, by a half-edge, that return to
+/// a place or may have no area; also how many faces there were.
+fn odd_faces(surface: &mut HalfEdges, places: &Places) -> (Vec<u32>, usize) {
+    let (mut odd, mut count) = (Vec::new(), 0);
+    let mut seen = vec![false; surface.len()];
+    let mut ring: Vec<u32> = Vec::new();
+    let mut points: Vec<Point> = Vec::new();
+    for first in 0..surface.len() as u32 {
+        if seen[first as usize] || !surface.alive(first) {
+            continue;
+        }
+        count += 1;
+        ring.clear();
+        points.clear();
+        let mut h = first;
+        while !std::mem::replace(&mut seen[h as usize], true) {
+            let place = surface.tail(h);
+            ring.push(place);
+            points.push(places.at(place));
+            h = surface.next(h);
+        }
+        if let [a, b] = ring[..] {
+            if a != b {
+                surface.zip(first, surface.next(first));
+                continue;
+            }
+        }
+        if !has_area(&points) || repeats(&mut ring) {
+            odd.push(first);
+        }
+    }
+    (odd, count)
+}
+
+fn finish(surface: &HalfEdges, places: &Places, fans: Fans, gap: f64) -> Crust {
+    let Fans { fan, firsts, .. } = fans;
+    let sample = |&h: &u32| places.samples[surface.tail(h) as usize];
+    let vertex_samples = firsts.iter().map(sample).collect();
+    let mut mesh = PolygonMesh::with_vertices(separate(surface, places, &firsts, gap));
+    mesh.corners.reserve(surface.len());
+    let mut face_balls = Vec::new();
+    let mut seen = vec![false; surface.len()];
+    for first in 0..surface.len() as u32 {
+        if seen[first as usize] || !surface.alive(first) {
+            continue;
+        }
+        let mut h = first;
+        while !std::mem::replace(&mut seen[h as usize], true) {
+            mesh.corners.push(fan[h as usize]);
+            h = surface.next(h);
+        }
         mesh.starts.push(mesh.corners.len() as u32);
-        face_balls.push(balls.get(face as usize).copied().unwrap_or([NONE; 2]));
+        face_balls.push(surface.balls[first as usize]);
     }
     Crust {
         mesh,

@@ -1,7 +1,8 @@
 //! Contraction: raw vertices that are one point become one place (fact F2).
 //!
-//! All raw vertices of a sample lie at that sample, and others can coincide
-//! after rounding. Each distinct position is a *place*; a face is then a
+//! All power vertices of a sample lie at that sample and come as one vertex
+//! (see `extract`); others can coincide after rounding. Each distinct position
+//! is a *place*; a face is then a
 //! closed walk over places. The whole of contraction is to cut every walk
 //! where it returns to a place it has visited: a piece of one half-edge has
 //! zero length and goes, a piece of two goes by gluing its neighbours to each
@@ -25,48 +26,58 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// The places of `raw`, in the order in which its vertices name them, and
-    /// the place of each raw vertex.
-    pub fn of(raw: &RawCrust) -> (Places, Vec<u32>) {
-        let n = raw.positions.len();
+    /// The places of a raw crust, in the order in which its vertices name
+    /// them, and its half-edges over them; nothing cut yet.
+    pub fn of(raw: RawCrust) -> (Places, HalfEdges) {
         let mut places = Places {
-            positions: Vec::with_capacity(n),
-            samples: Vec::with_capacity(n),
+            positions: raw.positions,
+            samples: raw.samples,
         };
-        let samples = raw.samples.iter().filter(|&&s| s != NONE);
-        let mut of_sample = vec![NONE; samples.max().map_or(0, |&s| s as usize + 1)];
+        let mut surface = HalfEdges {
+            next: raw.next,
+            twin: raw.twins,
+            place: raw.corners,
+            balls: raw.balls,
+        };
+        if let Some(place_of) = places.unite() {
+            for place in &mut surface.place {
+                *place = place_of[*place as usize];
+            }
+        }
+        (places, surface)
+    }
+
+    /// Makes equal positions one place; where each place went, if any did.
+    fn unite(&mut self) -> Option<Vec<u32>> {
+        let n = self.positions.len();
         // Open addressing, a power of two at most half full; only looked up,
         // never enumerated, so hashing decides no order.
         let mask = (2 * n + 2).next_power_of_two() - 1;
         let mut slots = vec![NONE; mask + 1];
         let mut place_of = Vec::with_capacity(n);
-        for (v, &p) in raw.positions.iter().enumerate() {
-            let sample = raw.samples.get(v).copied().unwrap_or(NONE);
-            if sample != NONE && of_sample[sample as usize] != NONE {
-                place_of.push(of_sample[sample as usize]);
-                continue;
-            }
+        let mut count = 0;
+        for v in 0..n {
             // Adding zero turns -0 into 0.
-            let p = p.map(|x| x + 0.0);
+            let p = self.positions[v].map(|x| x + 0.0);
             let mut slot = hash(p) as usize & mask;
-            while slots[slot] != NONE && places.positions[slots[slot] as usize] != p {
+            while slots[slot] != NONE && self.positions[slots[slot] as usize] != p {
                 slot = (slot + 1) & mask;
             }
             if slots[slot] == NONE {
-                slots[slot] = places.positions.len() as u32;
-                places.positions.push(p);
-                places.samples.push(NONE);
+                slots[slot] = count as u32;
+                self.positions[count] = p;
+                self.samples[count] = self.samples[v];
+                count += 1;
             }
             let place = slots[slot];
             place_of.push(place);
-            if sample != NONE {
-                of_sample[sample as usize] = place;
-                if places.samples[place as usize] == NONE {
-                    places.samples[place as usize] = sample;
-                }
+            if self.samples[place as usize] == NONE {
+                self.samples[place as usize] = self.samples[v];
             }
         }
-        (places, place_of)
+        self.positions.truncate(count);
+        self.samples.truncate(count);
+        (count < n).then_some(place_of)
     }
 
     /// The position of a place.
@@ -81,26 +92,6 @@ fn hash(p: Point) -> u64 {
         let h = (h ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         h ^ (h >> 29)
     })
-}
-
-/// The raw half-edges over places; nothing contracted yet.
-pub(crate) fn half_edges(raw: &RawCrust, place_of: &[u32]) -> HalfEdges {
-    let n = raw.corners.len();
-    let mut next: Vec<u32> = (1..=n as u32).collect();
-    let mut face = vec![0; n];
-    for (f, ends) in raw.starts.windows(2).enumerate() {
-        let (start, end) = (ends[0] as usize, ends[1] as usize);
-        face[start..end].fill(f as u32);
-        if end > start {
-            next[end - 1] = ends[0];
-        }
-    }
-    HalfEdges {
-        next,
-        twin: raw.twins.clone(),
-        place: raw.corners.iter().map(|&v| place_of[v as usize]).collect(),
-        face,
-    }
 }
 
 /// Cuts faces where they return to a place; keeps its scratch tables.

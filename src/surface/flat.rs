@@ -15,7 +15,7 @@
 
 use super::contract::{Cutter, Places};
 use super::halfedges::HalfEdges;
-use crate::geom::vec3::{cross, dist_sq, norm_sq, sub};
+use crate::geom::vec3::{add, cross, dist_sq, norm_sq, sub};
 use crate::geom::Point;
 use robust::{orient2d, Coord};
 
@@ -224,6 +224,28 @@ impl<'a> Tailor<'a> {
         self.queue.push(self.corners[0]);
         self.queue.push(self.corners[2]);
     }
+}
+
+/// Whether a closed polygon has a vector area beyond doubt, so its corners are
+/// on no line.
+pub(crate) fn has_area(points: &[Point]) -> bool {
+    let n = points.len();
+    if n < 3 {
+        return false;
+    }
+    let origin = points[0];
+    let (mut sum, mut before, mut size) = ([0.0; 3], sub(points[1], origin), 0.0f64);
+    size = size.max(largest(before));
+    for &p in &points[2..] {
+        let p = sub(p, origin);
+        sum = add(sum, cross(before, p));
+        size = size.max(largest(p));
+        before = p;
+    }
+    // Each of the n terms is off by less than 10 size² / 2^53, and adding it
+    // rounds a sum of at most 2 n size².
+    let n = n as f64;
+    largest(sum) > 1e-14 * n * n * size * size && size * size > 1e-280
 }
 
 /// Twice the vector area of a closed polygon.

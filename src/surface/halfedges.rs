@@ -23,8 +23,8 @@ pub(crate) struct HalfEdges {
     pub twin: Vec<u32>,
     /// The place where it starts.
     pub place: Vec<u32>,
-    /// The raw face whose part it bounds.
-    pub face: Vec<u32>,
+    /// The inner and the outer ball of its face.
+    pub balls: Vec<[u32; 2]>,
 }
 
 impl HalfEdges {
@@ -84,8 +84,8 @@ impl HalfEdges {
     /// the half-edge that goes on to where `h` ended is returned.
     pub fn subdivide(&mut self, h: u32, place: u32) -> u32 {
         let t = self.twin(h);
-        let h2 = self.push(self.next(h), place, self.face[h as usize]);
-        let t2 = self.push(self.next(t), place, self.face[t as usize]);
+        let h2 = self.push(self.next(h), place, self.balls[h as usize]);
+        let t2 = self.push(self.next(t), place, self.balls[t as usize]);
         self.next[h as usize] = h2;
         self.next[t as usize] = t2;
         self.pair(h, t2);
@@ -97,20 +97,20 @@ impl HalfEdges {
     /// half-edges of it, `before_a` and `before_b` those before them.
     pub fn chord(&mut self, before_a: u32, before_b: u32) {
         let (a, b) = (self.next(before_a), self.next(before_b));
-        let face = self.face[a as usize];
-        let ab = self.push(b, self.tail(a), face);
-        let ba = self.push(a, self.tail(b), face);
+        let balls = self.balls[a as usize];
+        let ab = self.push(b, self.tail(a), balls);
+        let ba = self.push(a, self.tail(b), balls);
         self.next[before_a as usize] = ab;
         self.next[before_b as usize] = ba;
         self.pair(ab, ba);
     }
 
-    fn push(&mut self, next: u32, place: u32, face: u32) -> u32 {
+    fn push(&mut self, next: u32, place: u32, balls: [u32; 2]) -> u32 {
         let h = self.next.len() as u32;
         self.next.push(next);
         self.twin.push(NONE);
         self.place.push(place);
-        self.face.push(face);
+        self.balls.push(balls);
         h
     }
 

@@ -29,6 +29,7 @@ mod tests;
 mod triangulate;
 mod unfold;
 
+pub(crate) use clean::clean_counted;
 pub use clean::{clean, CleanOptions};
 pub(crate) use components::drop_inverted;
 pub use components::{filter_shells, Keep, MinVolume, Selection, ShellFilter, Shells};

@@ -24,24 +24,87 @@ use super::raw::NONE;
 use crate::geom::vec3::{add, norm, scale, sub};
 use crate::geom::Point;
 
-/// Removes pairs of faces with the same corners in opposite order.
-pub(crate) fn remove_opposite_faces(surface: &mut HalfEdges) -> usize {
-    let mut keys: Vec<(u64, u32)> = Vec::new();
-    for first in surface.faces() {
-        let (mut at, mut key, mut lowest) = (first, 0u64, first);
-        loop {
-            key = key.wrapping_add(mix(surface.tail(at)));
-            if surface.tail(at) < surface.tail(lowest) {
-                lowest = at;
+/// The vertices: at each one fan of half-edges.
+pub(crate) struct Fans {
+    /// The vertex at which each half-edge starts.
+    pub fan: Vec<u32>,
+    /// The first half-edge of each vertex; vertices are in this order.
+    pub firsts: Vec<u32>,
+    /// The first half-edges of fans that share their place with others, reach
+    /// a place twice or have two faces only. An edge that is not the only one
+    /// between its places has odd fans at both ends, and so have the corners
+    /// of faces with the same corners in opposite order: where a fan is alone
+    /// at its place, the two have both their edges in it.
+    pub odd: Vec<u32>,
+}
+
+impl Fans {
+    /// Walks round all vertices.
+    pub fn of(surface: &HalfEdges, places: usize) -> Fans {
+        let mut fans = Fans {
+            fan: vec![NONE; surface.len()],
+            firsts: Vec::with_capacity(places),
+            odd: Vec::new(),
+        };
+        let mut first_at = vec![NONE; places];
+        let mut ends: Vec<u32> = Vec::new();
+        for first in 0..surface.len() as u32 {
+            if !surface.alive(first) || fans.fan[first as usize] != NONE {
+                continue;
             }
-            at = surface.next(at);
-            if at == first {
+            let number = fans.firsts.len() as u32;
+            ends.clear();
+            let mut h = first;
+            while fans.fan[h as usize] == NONE {
+                fans.fan[h as usize] = number;
+                let twin = surface.twin(h);
+                ends.push(surface.tail(twin));
+                h = surface.next(twin);
+            }
+            let before = &mut first_at[surface.tail(first) as usize];
+            if *before != NONE {
+                fans.odd.extend([*before, first]);
+            } else if ends.len() <= 2 || repeats(&mut ends) {
+                fans.odd.push(first);
+            }
+            *before = first;
+            fans.firsts.push(first);
+        }
+        fans
+    }
+}
+
+/// Whether a number occurs twice.
+pub(crate) fn repeats(numbers: &mut [u32]) -> bool {
+    const FEW: usize = 16;
+    if numbers.len() <= FEW {
+        return (1..numbers.len()).any(|k| numbers[..k].contains(&numbers[k]));
+    }
+    numbers.sort_unstable();
+    numbers.windows(2).any(|two| two[0] == two[1])
+}
+
+/// Removes pairs of faces with the same corners in opposite order, whose
+/// corners all have odd fans.
+pub(crate) fn remove_opposite_faces(surface: &mut HalfEdges, fans: &Fans) -> usize {
+    let mut odd = vec![false; fans.firsts.len()];
+    for &h in &fans.odd {
+        odd[fans.fan[h as usize] as usize] = true;
+    }
+    let is_odd = |h: u32| odd[fans.fan[h as usize] as usize];
+    let mut keys: Vec<(u64, u32)> = Vec::new();
+    for &start in &fans.odd {
+        let mut spoke = start;
+        loop {
+            keys.extend(key(surface, spoke, is_odd));
+            spoke = surface.around(spoke);
+            if spoke == start {
                 break;
             }
         }
-        keys.push((key, lowest));
     }
     keys.sort_unstable();
+    keys.dedup();
     let mut removed = 0;
     let mut start = 0;
     while start < keys.len() {
@@ -60,6 +123,25 @@ pub(crate) fn remove_opposite_faces(surface: &mut HalfEdges) -> usize {
         start = end;
     }
     removed
+}
+
+/// A number that faces with the same corners have in common, and the half-edge
+/// of the face that starts at its lowest place; none if a corner is not `odd`.
+fn key(surface: &HalfEdges, first: u32, odd: impl Fn(u32) -> bool) -> Option<(u64, u32)> {
+    let (mut at, mut key, mut lowest) = (first, 0u64, first);
+    loop {
+        if !odd(at) {
+            return None;
+        }
+        key = key.wrapping_add(mix(surface.tail(at)));
+        if surface.tail(at) < surface.tail(lowest) {
+            lowest = at;
+        }
+        at = surface.next(at);
+        if at == first {
+            return Some((key, lowest));
+        }
+    }
 }
 
 fn mix(place: u32) -> u64 {
@@ -162,8 +244,7 @@ pub(crate) fn split_double_edges(surface: &mut HalfEdges) -> usize {
     split
 }
 
-/// The position of each of `count` vertices, `fan` saying at which of them
-/// each half-edge starts.
+/// The position of each vertex, given by its first half-edge.
 ///
 /// With a positive `gap`, all vertices but one at each place of several fans
 /// move by that much into their own fan, away from the other sheets. The one
@@ -171,29 +252,23 @@ pub(crate) fn split_double_edges(surface: &mut HalfEdges) -> usize {
 pub(crate) fn separate(
     surface: &HalfEdges,
     places: &Places,
-    fan: &[u32],
-    count: u32,
+    firsts: &[u32],
     gap: f64,
 ) -> Vec<Point> {
-    let mut first_of = vec![NONE; count as usize];
-    let mut fans_at = vec![0u32; places.positions.len()];
-    for h in (0..surface.len() as u32).filter(|&h| surface.alive(h)) {
-        let first = &mut first_of[fan[h as usize] as usize];
-        if *first == NONE {
-            *first = h;
-            fans_at[surface.tail(h) as usize] += 1;
-        }
-    }
-    let at = |vertex: usize| surface.tail(first_of[vertex]);
-    let mut positions: Vec<Point> = (0..count as usize).map(|v| places.at(at(v))).collect();
+    let at = |vertex: usize| surface.tail(firsts[vertex]);
+    let mut positions: Vec<Point> = (0..firsts.len()).map(|v| places.at(at(v))).collect();
     if gap <= 0.0 {
         return positions;
     }
+    let mut fans_at = vec![0u32; places.positions.len()];
+    for vertex in 0..firsts.len() {
+        fans_at[at(vertex) as usize] += 1;
+    }
     // Place, width, vertex, mean direction of its edges.
     let mut split: Vec<(u32, f64, u32, Point)> = Vec::new();
-    for vertex in 0..count as usize {
+    for vertex in 0..firsts.len() {
         if fans_at[at(vertex) as usize] > 1 {
-            let mean = mean_direction(surface, places, first_of[vertex]);
+            let mean = mean_direction(surface, places, firsts[vertex]);
             split.push((at(vertex), norm(mean), vertex as u32, mean));
         }
     }

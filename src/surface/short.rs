@@ -139,7 +139,6 @@ fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32, tolerance: f6
 
 #[cfg(test)]
 mod tests {
-    use super::super::contract::half_edges;
     use super::super::raw::RawCrust;
     use super::*;
 
@@ -147,10 +146,7 @@ mod tests {
     /// that may go are gone without a change of its Euler characteristic.
     #[test]
     fn topology_stays_whatever_the_tolerance() {
-        let mut raw = RawCrust {
-            starts: vec![0],
-            ..RawCrust::default()
-        };
+        let mut raw = RawCrust::default();
         let id = |i: u32, j: u32| (i % 4) * 4 + j % 4;
         for i in 0..4 {
             for j in 0..4 {
@@ -158,7 +154,9 @@ mod tests {
                     .push([f64::from(i), f64::from(j), f64::from(i * j)]);
                 raw.corners
                     .extend([id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]);
-                raw.starts.push(raw.corners.len() as u32);
+                let first = 4 * id(i, j);
+                raw.next.extend([1, 2, 3, 0].map(|k| first + k));
+                raw.balls.extend([[0, 1]; 4]);
                 // The sides look down, right, up and left.
                 let side = |i: u32, j: u32, k: u32| 4 * id(i, j) + k;
                 raw.twins.extend([
@@ -170,8 +168,7 @@ mod tests {
             }
         }
         raw.samples = vec![NONE; 16];
-        let (places, place_of) = Places::of(&raw);
-        let mut surface = half_edges(&raw, &place_of);
+        let (places, mut surface) = Places::of(raw);
         let mut cutter = super::super::contract::Cutter::new(16);
         let contracted = contract_short_edges(&mut surface, &places, 1e9, |surface, h| {
             cutter.cut(surface, h);

@@ -1,8 +1,10 @@
 //! The crust stage of the pipeline: extract, clean, cut into triangles, mend;
 //! and, where a crossing resists, let a ball change sides and start over.
 
+use std::time::Instant;
+
 use super::mend::{mend_crust, MendOptions};
-use super::{clean, raw_crust, triangulate_from, CleanOptions, Crust, Placement, NONE};
+use super::{clean_counted, raw_crust, triangulate_from, CleanOptions, Crust, Placement, NONE};
 use crate::context::{Context, Stage};
 use crate::delaunay::{times_power, Samples};
 use crate::error::Error;
@@ -115,21 +117,25 @@ impl Job<'_> {
             sample: &|s| resized(single(self.samples.points[s as usize]), unit),
             to_user: &|p| resized(single(lattice.to_user(p.map(|x| x * step))), unit),
         };
+        let mut clock = Instant::now();
         let raw = raw_crust(self.power, sides, &place);
-        if raw.balls.is_empty() {
+        stats.part("crust: extract", &mut clock);
+        if raw.next.is_empty() {
             return Err(self.nothing());
         }
-        if first {
-            stats.power_faces = raw.balls.len();
-        }
         context.advance(Stage::Crust, 1, 3)?;
-        let polygons = clean(raw, &CleanOptions::default());
+        let (polygons, faces) = clean_counted(raw, &CleanOptions::default());
+        if first {
+            stats.power_faces = faces;
+        }
         stats.polygons = polygons.mesh.face_count();
+        stats.part("crust: clean", &mut clock);
         context.advance(Stage::Crust, 2, 3)?;
         let (triangles, polygon_of) = triangulate_from(&polygons);
         if triangles.mesh.face_count() == 0 {
             return Err(self.nothing());
         }
+        stats.part("crust: triangulate", &mut clock);
         let how = MendOptions {
             flatness: match options.faces {
                 Faces::Triangles => options.flatness,
@@ -151,6 +157,7 @@ impl Job<'_> {
             },
         };
         let mended = mend_crust(&triangles, &how, context)?;
+        stats.part("crust: mend", &mut clock);
         if first {
             stats.crossings_found = mended.found;
         }

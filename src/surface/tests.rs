@@ -27,19 +27,19 @@ fn raw(positions: &[Point], samples: &[u32], faces: &[Vec<u32>]) -> RawCrust {
     let mut crust = RawCrust {
         positions: positions.to_vec(),
         samples: samples.to_vec(),
-        starts: vec![0],
         ..RawCrust::default()
     };
     let mut by_ends = BTreeMap::new();
     for (f, face) in faces.iter().enumerate() {
+        let first = crust.corners.len() as u32;
         for (k, &v) in face.iter().enumerate() {
             let c = crust.corners.len() as u32;
             let old = by_ends.insert((v, face[(k + 1) % face.len()]), c);
             assert_eq!(old, None, "the input is no manifold");
             crust.corners.push(v);
+            crust.next.push(first + (k as u32 + 1) % face.len() as u32);
+            crust.balls.push([f as u32, 1000 + f as u32]);
         }
-        crust.starts.push(crust.corners.len() as u32);
-        crust.balls.push([f as u32, 1000 + f as u32]);
     }
     crust.twins = vec![NONE; crust.corners.len()];
     for (&(a, b), &c) in &by_ends {

@@ -34,57 +34,54 @@ fn labellings(run: &Run, seed: u64) -> Vec<Vec<Side>> {
     all
 }
 
-/// The corner after each corner on its face, and the face of each corner.
-fn round_faces(raw: &RawCrust) -> (Vec<u32>, Vec<u32>) {
-    let mut next = vec![0; raw.corners.len()];
-    let mut face_of = vec![0; raw.corners.len()];
-    for (f, w) in (0u32..).zip(raw.starts.windows(2)) {
-        for c in w[0]..w[1] {
-            next[c as usize] = if c + 1 == w[1] { w[0] } else { c + 1 };
-            face_of[c as usize] = f;
-        }
-    }
-    (next, face_of)
-}
-
 /// Vertices - edges + faces of the crust, all components together.
 fn euler(raw: &RawCrust) -> i64 {
-    let sizes = [raw.positions.len(), raw.corners.len() / 2, raw.balls.len()];
+    let sizes = [
+        raw.positions.len(),
+        raw.corners.len() / 2,
+        raw.faces().len(),
+    ];
     let [v, e, f] = sizes.map(|n| n as i64);
     v - e + f
 }
 
-/// A closed 2-manifold, whatever the labels.
+/// Successors are a permutation and twins an involution; twins run the other
+/// way and lie on different faces, which share one of their balls.
+#[track_caller]
+fn assert_law(name: &str, raw: &RawCrust) {
+    let n = raw.next.len();
+    for table in [raw.twins.len(), raw.corners.len(), raw.balls.len()] {
+        assert_eq!(table, n, "{name}");
+    }
+    assert_eq!(raw.samples.len(), raw.positions.len(), "{name}");
+    let mut followed = vec![false; n];
+    for h in 0..n {
+        let (next, t) = (raw.next[h] as usize, raw.twins[h] as usize);
+        assert!(!std::mem::replace(&mut followed[next], true), "{name}");
+        assert_eq!(raw.balls[next], raw.balls[h], "{name}: {h}");
+        assert!(t != h && raw.twins[t] as usize == h, "{name}: {h}");
+        let (tail, head) = (raw.corners[h], raw.corners[next]);
+        assert!(tail != head, "{name}: {h} has no length");
+        assert_eq!(raw.corners[t], head, "{name}: twin of {h}");
+        assert_eq!(raw.corners[raw.next[t] as usize], tail, "{name}: {h}");
+        let [a, b] = [raw.balls[h], raw.balls[t]];
+        assert!((a[0] == b[0]) != (a[1] == b[1]), "{name}: {a:?} {b:?}");
+    }
+}
+
+/// A closed 2-manifold, whatever the labels: the crust with all power
+/// vertices apart.
 #[track_caller]
 pub fn assert_closed(name: &str, run: &Run, sides: &[Side], raw: &RawCrust) {
-    let n = raw.corners.len();
-    assert_eq!(raw.twins.len(), n, "{name}");
-    assert_eq!(raw.starts.len(), raw.balls.len() + 1, "{name}");
-    assert_eq!(raw.samples.len(), raw.positions.len(), "{name}");
-    assert_eq!(raw.starts.last().copied(), Some(n as u32), "{name}");
-    let (next, face_of) = round_faces(raw);
+    assert_law(name, raw);
+    let n = raw.next.len();
     let mut corners_at = vec![0u32; raw.positions.len()];
-    for c in 0..n {
-        let t = raw.twins[c] as usize;
-        assert!(t != c && raw.twins[t] as usize == c, "{name}: corner {c}");
-        let (tail, head) = (raw.corners[c], raw.corners[next[c] as usize]);
-        assert_eq!(raw.corners[t], head, "{name}: twin of {c}");
-        assert_eq!(raw.corners[next[t] as usize], tail, "{name}: twin of {c}");
-        let (f, g) = (face_of[c] as usize, face_of[t] as usize);
-        // Faces that meet in an edge share one of their balls.
-        let [a, b] = [raw.balls[f], raw.balls[g]];
-        assert!(
-            f != g && (a[0] == b[0]) != (a[1] == b[1]),
-            "{name}: {a:?} {b:?}"
-        );
-        corners_at[tail as usize] += 1;
+    for &v in &raw.corners {
+        corners_at[v as usize] += 1;
     }
-    for w in raw.starts.windows(2) {
-        assert!(
-            w[1] >= w[0] + 3,
-            "{name}: a face of {} corners",
-            w[1] - w[0]
-        );
+    let faces = raw.faces();
+    for face in &faces {
+        assert!(face.len() >= 3, "{name}: a face of {} corners", face.len());
     }
     // Each vertex has one fan: going round from one corner meets all.
     let mut seen = vec![false; n];
@@ -97,7 +94,7 @@ pub fn assert_closed(name: &str, run: &Run, sides: &[Side], raw: &RawCrust) {
         let mut at = start;
         while !seen[at] {
             seen[at] = true;
-            at = next[raw.twins[at] as usize] as usize;
+            at = raw.next[raw.twins[at] as usize] as usize;
         }
     }
     assert!(fans.iter().all(|&f| f == 1), "{name}: pinched");
@@ -119,7 +116,7 @@ pub fn assert_closed(name: &str, run: &Run, sides: &[Side], raw: &RawCrust) {
         }
     }
     let got: BTreeSet<[u32; 2]> = raw.balls.iter().copied().collect();
-    assert_eq!(got.len(), raw.balls.len(), "{name}: a face twice");
+    assert_eq!(got.len(), faces.len(), "{name}: a face twice");
     assert!(
         got == wanted,
         "{name}: {} faces of {}",
@@ -135,8 +132,9 @@ fn the_raw_crust_is_a_closed_manifold_whatever_the_labels() {
             let run = Run::of(&points, merge);
             for (k, sides) in labellings(&run, 64).iter().enumerate() {
                 let name = format!("{name}, merge {merge}, labels {k}");
-                let raw = run.raw(sides);
+                let raw = run.apart(sides);
                 assert_closed(&name, &run, sides, &raw);
+                assert_law(&name, &run.raw(sides));
                 // The surface of the solid of inner cells, to which the inner
                 // shape is dual: twice its Euler number.
                 let shape = power_shape(&run.power, &run.balls, sides, Side::Inner);
@@ -146,7 +144,8 @@ fn the_raw_crust_is_a_closed_manifold_whatever_the_labels() {
     }
 }
 
-/// Fact F2: vertices whose four balls touch a sample lie at it, bit for bit.
+/// Fact F2: vertices whose four balls touch a sample lie at it, bit for bit,
+/// and are one.
 /// A sample that four balls or more touch, of both sides, is nearly always
 /// one; with fewer it lies within a face or an edge.
 #[test]
@@ -159,7 +158,8 @@ fn the_crust_passes_through_the_samples() {
         for (p, &s) in raw.positions.iter().zip(&raw.samples) {
             if s != NONE {
                 assert_eq!(*p, position(&run.samples.sites[s as usize]), "{name}");
-                reached[s as usize] = true;
+                let again = std::mem::replace(&mut reached[s as usize], true);
+                assert!(!again, "{name}: sample {s} twice");
             }
         }
         let mut touched = vec![[0, 0]; run.samples.len()];
@@ -184,9 +184,8 @@ fn the_crust_passes_through_the_samples() {
 
 fn volume(raw: &RawCrust) -> f64 {
     let mut six = 0.0;
-    for w in raw.starts.windows(2) {
-        let face = &raw.corners[w[0] as usize..w[1] as usize];
-        let at = |k: usize| raw.positions[face[k] as usize];
+    for face in raw.faces() {
+        let at = |k: usize| raw.positions[raw.corners[face[k] as usize] as usize];
         for k in 1..face.len() - 1 {
             six += dot(at(0), cross(at(k), at(k + 1)));
         }
@@ -252,7 +251,7 @@ fn crusts_have_the_topology_of_their_surfaces() {
     ] {
         for merge in [0.0, 0.5] {
             let run = Run::of(&points, merge);
-            let raw = run.raw(&run.labels.sides);
+            let raw = run.apart(&run.labels.sides);
             assert_eq!(euler(&raw), wanted, "{name}, merge {merge}");
             // Inside and outside: a solid has half its surface's number.
             let shape = power_shape(&run.power, &run.balls, &run.labels.sides, Side::Inner);

@@ -162,7 +162,7 @@ fn balls_are_added_for_samples_off_the_crust_and_the_diagram_stays_sound() {
                 opposites: &[],
             };
             assert_eq!(evidence.outer.len(), run.balls.len(), "{name}");
-            crate::crust::assert_closed(&name, &run, &labels.sides, &run.raw(&labels.sides));
+            crate::crust::assert_closed(&name, &run, &labels.sides, &run.apart(&labels.sides));
         }
     }
     assert!(added > 20, "only {added} balls added");

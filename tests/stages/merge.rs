@@ -118,15 +118,10 @@ fn touched_samples_are_touched_within_the_share() {
 /// The faces as cycles of vertices, whatever their numbers: each vertex by
 /// its position, each face from its least corner, sorted.
 fn faces(raw: &RawCrust) -> Vec<Vec<[u64; 3]>> {
-    let mut faces: Vec<Vec<[u64; 3]>> = raw
-        .starts
-        .windows(2)
-        .map(|w| {
-            let corners = &raw.corners[w[0] as usize..w[1] as usize];
-            let mut cycle: Vec<[u64; 3]> = corners
-                .iter()
-                .map(|&v| raw.positions[v as usize].map(f64::to_bits))
-                .collect();
+    let mut faces: Vec<Vec<[u64; 3]>> = (raw.faces().iter())
+        .map(|face| {
+            let at = |h: &u32| raw.positions[raw.corners[*h as usize] as usize];
+            let mut cycle: Vec<[u64; 3]> = face.iter().map(|h| at(h).map(f64::to_bits)).collect();
             let least = (0..cycle.len()).min_by_key(|&k| {
                 let mut turned = cycle.clone();
                 turned.rotate_left(k);

@@ -64,9 +64,18 @@ impl Run {
 
     /// The raw crust for any labels, positions in lattice steps.
     pub fn raw(&self, sides: &[Side]) -> RawCrust {
+        self.crust(sides, |b| self.poles.balls.touching(b))
+    }
+
+    /// The same, no power vertices drawn together at samples.
+    pub fn apart(&self, sides: &[Side]) -> RawCrust {
+        self.crust(sides, |_| &[])
+    }
+
+    fn crust<'a>(&'a self, sides: &[Side], touching: impl Fn(u32) -> &'a [u32] + Sync) -> RawCrust {
         let step = self.step();
         let place = Placement {
-            touching: &|b| self.poles.balls.touching(b),
+            touching: &|b| touching(b),
             sample: &|s| position(&self.samples.sites[s as usize]),
             to_user: &|p| p.map(|v| v * step),
         };
