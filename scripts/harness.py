@@ -7,8 +7,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,38 +42,37 @@ class Run:
 
     code: int  # negative: ended by that signal
     seconds: float
+    cpu_seconds: float
     peak_mb: float
     output: str
     errors: str
     timed_out: bool
 
 
-def run(command: list, limit_s: float = 600) -> Run:
-    """Runs a command with wall time and peak memory of that process alone."""
+def run(command: list, limit_s: float = 600, cpus: int = 0) -> Run:
+    """Runs a command with wall time, processor time and peak memory of that process alone,
+    on so many processors (0: all)."""
+    reading, writing = os.pipe()
+    launcher = [sys.executable, "-I", "-S", ROOT / "scripts" / "launch.py", writing, limit_s, cpus]
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        start = time.perf_counter()
-        process = subprocess.Popen(
-            [str(word) for word in command], stdin=subprocess.DEVNULL, stdout=out, stderr=err
+        done = subprocess.run(
+            [str(word) for word in launcher + command], stdin=subprocess.DEVNULL, stdout=out,
+            stderr=err, pass_fds=[writing],
         )
-        expired = threading.Event()
-
-        def expire():
-            expired.set()
-            process.kill()
-
-        timer = threading.Timer(limit_s, expire)
-        timer.start()
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = time.perf_counter() - start
-        timer.cancel()
-        process.returncode = os.waitstatus_to_exitcode(status)
+        os.close(writing)
+        with open(reading) as pipe:
+            report = pipe.read().split()
         texts = []
         for stream in (out, err):
             stream.seek(0)
             texts.append(stream.read().decode("utf-8", "replace"))
-        return Run(
-            process.returncode, seconds, usage.ru_maxrss / 1024, *texts, expired.is_set()
-        )
+    if done.returncode != 0:
+        raise RuntimeError(f"{command[0]} could not be run: {texts[1].strip()[-200:]}")
+    status, seconds, cpu_seconds, kilobytes, expired = map(float, report)
+    return Run(
+        os.waitstatus_to_exitcode(int(status)), seconds, cpu_seconds, kilobytes / 1024,
+        *texts, bool(expired),
+    )
 
 
 def reconstruct(binary: Path, cloud: Path, mesh: Path, *options, limit_s: float = 600):
