@@ -13,6 +13,8 @@
 
 #[path = "../../tests/common/mod.rs"]
 mod common;
+// The tests use more of it.
+#[allow(dead_code)]
 #[path = "../../tests/stages/run.rs"]
 mod run;
 

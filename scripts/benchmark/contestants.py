@@ -53,7 +53,7 @@ class Powercrust:
         if done.code != 0 or stats is None:
             raise RuntimeError(f"exit {done.code}: {done.errors.strip()[-200:]}")
         stages = harness.stage_seconds(stats)
-        return {**stages, "stages": sum(stages.values()), "wall": done.seconds,
+        return {**stages, **dict(stats["stats"]["part_seconds"]), "stages": sum(stages.values()), "wall": done.seconds,
                 "cpu": done.cpu_seconds, "peak MB": done.peak_mb,
                 "foretold MB": self.foretold(files)}
 
