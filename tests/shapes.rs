@@ -28,6 +28,23 @@ struct Case<'a> {
     volume: f64,
 }
 
+/// What most shapes without edges come up to.
+const SMOOTH: Case = Case {
+    shape: &shapes::UNIT_SPHERE,
+    enough: 1_000,
+    smooth: true,
+    order: 0.8,
+    mean_at_1k: 0.01,
+    volume: 0.01,
+};
+
+/// The same for shapes with edges.
+const EDGED: Case = Case {
+    smooth: false,
+    mean_at_1k: 0.02,
+    ..SMOOTH
+};
+
 /// Runs the shape at every sample count and holds it against its case.
 fn check(case: &Case) {
     let shape = case.shape;
@@ -134,11 +151,8 @@ fn assert_provenance(name: &str, points: &[Point], result: &Reconstruction) {
 fn sphere() {
     check(&Case {
         shape: &shapes::UNIT_SPHERE,
-        enough: 1_000,
-        smooth: true,
-        order: 0.8,
         mean_at_1k: 0.006,
-        volume: 0.01,
+        ..SMOOTH
     });
 }
 
@@ -146,11 +160,8 @@ fn sphere() {
 fn ellipsoid() {
     check(&Case {
         shape: &Ellipsoid([1.0, 2.0, 3.0]),
-        enough: 1_000,
-        smooth: true,
-        order: 0.8,
         mean_at_1k: 0.02,
-        volume: 0.01,
+        ..SMOOTH
     });
 }
 
@@ -158,11 +169,7 @@ fn ellipsoid() {
 fn torus() {
     check(&Case {
         shape: &shapes::TORUS,
-        enough: 1_000,
-        smooth: true,
-        order: 0.8,
-        mean_at_1k: 0.01,
-        volume: 0.01,
+        ..SMOOTH
     });
 }
 
@@ -171,10 +178,8 @@ fn double_torus() {
     check(&Case {
         shape: &shapes::DOUBLE_TORUS,
         enough: 10_000,
-        smooth: true,
-        order: 0.8,
         mean_at_1k: 0.02,
-        volume: 0.01,
+        ..SMOOTH
     });
 }
 
@@ -182,11 +187,7 @@ fn double_torus() {
 fn nested_spheres() {
     check(&Case {
         shape: &shapes::SHELL,
-        enough: 1_000,
-        smooth: true,
-        order: 0.8,
-        mean_at_1k: 0.01,
-        volume: 0.01,
+        ..SMOOTH
     });
 }
 
@@ -194,11 +195,7 @@ fn nested_spheres() {
 fn capsule() {
     check(&Case {
         shape: &shapes::CAPSULE,
-        enough: 1_000,
-        smooth: true,
-        order: 0.8,
-        mean_at_1k: 0.01,
-        volume: 0.01,
+        ..SMOOTH
     });
 }
 
@@ -207,10 +204,8 @@ fn rounded_plate() {
     check(&Case {
         shape: &shapes::ROUNDED_PLATE,
         enough: 10_000,
-        smooth: true,
-        order: 0.8,
         mean_at_1k: 0.02,
-        volume: 0.01,
+        ..SMOOTH
     });
 }
 
@@ -220,11 +215,7 @@ fn rounded_plate() {
 fn cube() {
     check(&Case {
         shape: &shapes::CUBE,
-        enough: 1_000,
-        smooth: false,
-        order: 0.8,
-        mean_at_1k: 0.02,
-        volume: 0.01,
+        ..EDGED
     });
 }
 
@@ -233,10 +224,10 @@ fn thin_plate() {
     check(&Case {
         shape: &shapes::THIN_PLATE,
         enough: 10_000,
-        smooth: false,
         order: 0.7, // at 1,000 samples the plate is no thicker than their spacing
         mean_at_1k: 0.03,
         volume: 0.02,
+        ..EDGED
     });
 }
 
@@ -244,11 +235,7 @@ fn thin_plate() {
 fn cylinder() {
     check(&Case {
         shape: &shapes::CYLINDER,
-        enough: 1_000,
-        smooth: false,
-        order: 0.8,
-        mean_at_1k: 0.02,
-        volume: 0.01,
+        ..EDGED
     });
 }
 
@@ -257,10 +244,9 @@ fn cad_block() {
     check(&Case {
         shape: &shapes::CAD_BLOCK,
         enough: 10_000,
-        smooth: false,
-        order: 0.8,
         mean_at_1k: 0.05,
         volume: 0.02,
+        ..EDGED
     });
 }
 

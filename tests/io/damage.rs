@@ -2,7 +2,7 @@
 
 use super::formats::npy;
 use super::round_trip::{ascii, axis, polar_balls, solid, written, written_axis};
-use super::{PLAIN, SKIP};
+use super::{AXES, MESHES, PLAIN, SKIP};
 use powercrust::io::*;
 
 /// Small valid files of every kind.
@@ -10,13 +10,7 @@ fn seeds() -> Vec<Vec<u8>> {
     let mesh = solid();
     let mut files = Vec::new();
     for options in [WriteOptions::default(), ascii()] {
-        for format in [
-            MeshFormat::Ply,
-            MeshFormat::Obj,
-            MeshFormat::Off,
-            MeshFormat::Stl,
-            MeshFormat::Json,
-        ] {
+        for format in MESHES {
             let colours = [[1, 2, 3, 4]; 8];
             let with = MeshAttributes {
                 colours: Some(&colours),
@@ -24,7 +18,7 @@ fn seeds() -> Vec<Vec<u8>> {
             };
             files.push(written(format, &mesh, &with, &options));
         }
-        for format in [AxisFormat::Ma, AxisFormat::Ply, AxisFormat::Json] {
+        for format in AXES {
             files.push(written_axis(format, &axis(), &options));
         }
         let mut balls = Vec::new();
@@ -70,13 +64,7 @@ fn read_every_way(bytes: &[u8]) {
             }
         }
     }
-    for format in [
-        MeshFormat::Ply,
-        MeshFormat::Obj,
-        MeshFormat::Off,
-        MeshFormat::Stl,
-        MeshFormat::Json,
-    ] {
+    for format in MESHES {
         if let Ok(mesh) = read_mesh(bytes, format) {
             assert!(mesh
                 .corners
@@ -85,7 +73,7 @@ fn read_every_way(bytes: &[u8]) {
             assert!(mesh.faces().all(|f| f.len() >= 3));
         }
     }
-    for format in [AxisFormat::Ma, AxisFormat::Ply, AxisFormat::Json] {
+    for format in AXES {
         if let Ok(shape) = read_axis(bytes, format) {
             assert_eq!(shape.ids.len(), shape.balls.len());
         }

@@ -1,6 +1,6 @@
 //! What is written reads back the same.
 
-use super::PLAIN;
+use super::{AXES, MESHES, PLAIN};
 use powercrust::io::*;
 use powercrust::surface::NONE;
 use powercrust::{Ball, PolarBall, PolygonMesh, PowerShape, Side};
@@ -252,13 +252,7 @@ fn writers_refuse_contradictions() {
     assert!(matches!(error, Err(WriteError::Io(_))));
     // Nothing at all is still a file.
     let empty = PolygonMesh::default();
-    for format in [
-        MeshFormat::Ply,
-        MeshFormat::Obj,
-        MeshFormat::Off,
-        MeshFormat::Stl,
-        MeshFormat::Json,
-    ] {
+    for format in MESHES {
         written(format, &empty, &with, &WriteOptions::default());
     }
 }
@@ -284,7 +278,7 @@ pub fn written_axis(format: AxisFormat, shape: &PowerShape, options: &WriteOptio
 fn axes_come_back_the_same() {
     let shape = axis();
     for options in [WriteOptions::default(), ascii()] {
-        for format in [AxisFormat::Ma, AxisFormat::Ply, AxisFormat::Json] {
+        for format in AXES {
             let file = written_axis(format, &shape, &options);
             let back = read_axis(&file, format).unwrap();
             assert_eq!(back.balls, shape.balls);
