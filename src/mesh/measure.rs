@@ -5,7 +5,8 @@ use super::soup::{place, Faces, Triangles};
 use super::topology::Topology;
 use super::wide::Sum;
 use super::PolygonMesh;
-use crate::geom::vec3::{cross, dot, norm, norm_sq, sub};
+use crate::geom::vec3::plain::{dot, norm, norm_sq};
+use crate::geom::vec3::{cross, sub};
 use crate::geom::{Bounds, Point};
 
 /// Volume and area of a set of faces.
@@ -153,11 +154,16 @@ pub(super) fn finite_bounds<'a>(points: impl Iterator<Item = &'a Point>) -> Opti
 pub fn components(mesh: &PolygonMesh) -> (Vec<u32>, usize) {
     let faces = Faces::of(mesh, |_, _| ());
     let topology = Topology::of(mesh.vertices.len(), &faces);
+    (labels(mesh, &faces, &topology), topology.shell_edges.len())
+}
+
+/// The shell of each face, `u32::MAX` for those that cannot be walked.
+pub(super) fn labels(mesh: &PolygonMesh, faces: &Faces, topology: &Topology) -> Vec<u32> {
     let mut labels = vec![u32::MAX; mesh.face_count()];
     for (&number, &shell) in faces.number.iter().zip(&topology.shell) {
         labels[number as usize] = shell;
     }
-    (labels, topology.shell_edges.len())
+    labels
 }
 
 /// The signed volume that each shell of [`components`] encloses, in cubed
@@ -166,13 +172,24 @@ pub fn components(mesh: &PolygonMesh) -> (Vec<u32>, usize) {
 pub fn component_volumes(mesh: &PolygonMesh) -> Vec<f64> {
     let faces = Faces::of(mesh, |_, _| ());
     let topology = Topology::of(mesh.vertices.len(), &faces);
-    let origin = middle(&finite_bounds(mesh.vertices.iter()));
     let frame = Frame::new(&mesh.vertices);
+    let triangles = faces.triangles(&frame);
+    volumes(mesh, &topology, &frame, &triangles)
+}
+
+/// The signed volume of each shell.
+pub(super) fn volumes(
+    mesh: &PolygonMesh,
+    topology: &Topology,
+    frame: &Frame,
+    triangles: &Triangles,
+) -> Vec<f64> {
+    let origin = middle(&finite_bounds(mesh.vertices.iter()));
     sizes(
         &mesh.vertices,
         origin,
-        &frame,
-        &faces.triangles(&frame),
+        frame,
+        triangles,
         &topology.shell,
         topology.shell_edges.len(),
     )
