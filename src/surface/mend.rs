@@ -110,6 +110,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
     if options.single {
         points.iter_mut().for_each(|p| *p = round(*p));
     }
+    cx.advance(Stage::Crust, 1, 3)?;
     let mut mesh = TriMesh::new(&crust, &points);
     drop(points);
     let face_balls = crust.face_balls;
@@ -147,6 +148,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
         drop(limit);
         let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
+        cx.advance(Stage::Crust, 1, 3)?;
         mesh.compact(&mut spacing);
         laps.lap("coarsen");
         unlevel(&mut mesh, UNLEVEL, &spacing, &round);

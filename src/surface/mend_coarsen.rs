@@ -68,6 +68,7 @@ pub(crate) fn coarsen(
                 }
             }
         }
+        cx.advance(Stage::Crust, 1, 3)?;
         let flipped = work.flips(&mut todo);
         done.collapsed += collapsed;
         done.flipped += flipped;
