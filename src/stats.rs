@@ -132,9 +132,39 @@ impl Stats {
         let now = Instant::now();
         let seconds = now.duration_since(*clock).as_secs_f64();
         *clock = now;
+        self.add_part(name, seconds);
+    }
+
+    /// Adds to the seconds of a part of a stage.
+    pub(crate) fn add_part(&mut self, name: &str, seconds: f64) {
         match self.part_seconds.iter_mut().find(|(part, _)| part == name) {
             Some((_, total)) => *total += seconds,
             None => self.part_seconds.push((name.to_string(), seconds)),
         }
+    }
+}
+
+/// Measures the parts of a step that knows no [`Stats`].
+pub(crate) struct Laps {
+    last: Instant,
+    /// Seconds by part, in order.
+    pub seconds: Vec<(&'static str, f64)>,
+}
+
+impl Laps {
+    /// The first part begins.
+    pub fn start() -> Laps {
+        Laps {
+            last: Instant::now(),
+            seconds: Vec::new(),
+        }
+    }
+
+    /// A part ends, and the next begins.
+    pub fn lap(&mut self, part: &'static str) {
+        let now = Instant::now();
+        let seconds = now.duration_since(self.last).as_secs_f64();
+        self.seconds.push((part, seconds));
+        self.last = now;
     }
 }

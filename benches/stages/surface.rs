@@ -98,8 +98,9 @@ fn mend(bencher: Bencher, cloud: Cloud) {
         ball: &|b| run.balls.get(b as usize).copied(),
     };
     bencher
-        .counter(faces(&crust.mesh))
-        .bench_local(|| mend_crust(&crust, &how, &Context::default()).unwrap());
+        .with_inputs(|| crust.clone())
+        .input_counter(|crust| faces(&crust.mesh))
+        .bench_local_values(|crust| mend_crust(crust, &how, &Context::default()).unwrap());
 }
 
 #[divan::bench(args = SURFACES)]

@@ -160,7 +160,7 @@ fn judge(
     for (skip, t) in skip.iter_mut().zip(&triangles.corners) {
         *skip |= !t.iter().all(|&v| finite[v as usize]);
     }
-    duplicate_faces(&faces, &mut ledger);
+    duplicate_faces(&faces, &topology, &mut ledger);
     let (canonical, duplicate_positions) = coincidences(&frame, &finite);
     cx.advance(Stage::Check, 0, 1)?;
     let used = (0..points.len()).filter(|&v| topology.fans[v] > 0);
@@ -291,7 +291,37 @@ fn zero_areas(
     }
 }
 
-fn duplicate_faces(faces: &Faces, ledger: &mut Ledger) {
+fn duplicate_faces(faces: &Faces, topology: &Topology, ledger: &mut Ledger) {
+    let triangular = 3 * faces.len() == faces.corners.len();
+    let pairs = match &topology.twins {
+        Some(twins) if triangular => back_to_back(faces, twins),
+        _ => alike(faces),
+    };
+    for (a, b) in pairs {
+        let (a, b) = (faces.number[a as usize], faces.number[b as usize]);
+        ledger.add(
+            |c| &mut c.duplicate_face,
+            || Finding::DuplicateFace { a, b },
+        );
+    }
+}
+
+/// Triangles of the same vertices, where every edge has two: they have the
+/// same neighbours.
+fn back_to_back(faces: &Faces, twins: &[u32]) -> Vec<(u32, u32)> {
+    let sorted = |f: u32| {
+        let mut corners = [0, 1, 2].map(|k| faces.corners[3 * f as usize + k]);
+        corners.sort_unstable();
+        corners
+    };
+    (0..faces.len() as u32)
+        .map(|f| (f, twins[3 * f as usize] / 3))
+        .filter(|&(f, g)| f < g && sorted(f) == sorted(g))
+        .collect()
+}
+
+/// Faces of the same vertices, by the first of them.
+fn alike(faces: &Faces) -> Vec<(u32, u32)> {
     // A hash that does not depend on the order of the corners; fixed, so that
     // runs are alike. Faces of one hash are compared in full.
     let mix = |v: u32| {
@@ -319,13 +349,7 @@ fn duplicate_faces(faces: &Faces, ledger: &mut Ledger) {
         }
     }
     pairs.sort_unstable();
-    for (a, b) in pairs {
-        let (a, b) = (faces.number[a as usize], faces.number[b as usize]);
-        ledger.add(
-            |c| &mut c.duplicate_face,
-            || Finding::DuplicateFace { a, b },
-        );
-    }
+    pairs
 }
 
 fn enter_crossings(faces: &Faces, found: Crossings, ledger: &mut Ledger) {

@@ -6,7 +6,9 @@ use super::intersect::{contact, Contact, Twins};
 use super::soup::{place, Triangles};
 use crate::context::{Cancelled, Context, Stage};
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::cmp::Ordering;
+use std::sync::atomic::AtomicU8;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// How two faces meet beyond the vertices they share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -110,7 +112,7 @@ pub(super) fn crossings(
             let k = kind as usize;
             part.pairs[k] += 1;
             for face in [f, g] {
-                marks[face as usize].fetch_or(1 << k, Ordering::Relaxed);
+                marks[face as usize].fetch_or(1 << k, Relaxed);
             }
             part.found[k].push((f.min(g), f.max(g)));
             if part.found[k].len() > max.saturating_mul(2).saturating_add(64) {
@@ -132,7 +134,7 @@ pub(super) fn crossings(
     }
     for k in 0..KINDS {
         keep(&mut all.found[k], max);
-        let marked = |m: &&AtomicU8| m.load(Ordering::Relaxed) & (1 << k) != 0;
+        let marked = |m: &&AtomicU8| m.load(Relaxed) & (1 << k) != 0;
         all.faces[k] = marks.iter().filter(marked).count() as u64;
     }
     Ok(all)
@@ -172,22 +174,32 @@ pub(super) fn coincidences(frame: &Frame, finite: &[bool]) -> (Vec<u32>, u64) {
     let points = &frame.points;
     // Adding zero turns -0 into 0.
     let key = |v: u32| points[v as usize].map(|x| x + 0.0);
-    let mut order: Vec<u32> = (0..points.len() as u32)
+    let hash = |v: u32| {
+        (key(v).iter()).fold(0u64, |h, x| {
+            (h ^ x.to_bits())
+                .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                .rotate_left(29)
+        })
+    };
+    let mut order: Vec<(u64, u32)> = (0..points.len() as u32)
+        .into_par_iter()
         .filter(|&v| finite[v as usize])
+        .map(|v| (hash(v), v))
         .collect();
-    order.par_sort_unstable_by(|&v, &w| {
-        let (p, q) = (key(v), key(w));
-        (p[0].total_cmp(&q[0]))
-            .then(p[1].total_cmp(&q[1]))
-            .then(p[2].total_cmp(&q[2]))
-            .then(v.cmp(&w))
-    });
+    order.par_sort_unstable();
     let mut canonical: Vec<u32> = (0..points.len() as u32).collect();
     let mut doubles = 0;
-    for group in order.chunk_by(|&v, &w| key(v) == key(w)) {
-        for &v in &group[1..] {
-            canonical[v as usize] = group[0];
-            doubles += 1;
+    for alike in order
+        .chunk_by_mut(|a, b| a.0 == b.0)
+        .filter(|g| g.len() > 1)
+    {
+        // Of one hash, and nearly always at one place.
+        alike.sort_by(|&(_, v), &(_, w)| key(v).partial_cmp(&key(w)).unwrap_or(Ordering::Equal));
+        for group in alike.chunk_by(|&(_, v), &(_, w)| key(v) == key(w)) {
+            for &(_, v) in &group[1..] {
+                canonical[v as usize] = group[0].1;
+                doubles += 1;
+            }
         }
     }
     (canonical, doubles)

@@ -8,6 +8,7 @@
 use super::wide;
 use crate::geom::vec3::{cross, sub};
 use crate::geom::Point;
+use rayon::prelude::*;
 use robust::{Coord, Coord3D};
 
 /// Binary orders below the largest magnitude down to which every bit of every
@@ -28,10 +29,12 @@ pub(super) struct Frame {
     pub points: Vec<Point>,
     /// Which arithmetic decides signs for them.
     pub kernel: Kernel,
-    /// `points` are the vertices times two to this power.
-    exponent: i32,
+    /// `points` are the vertices times this.
+    inward: Shift,
+    outward: Shift,
     /// Times two to this power magnitudes lie below one, whatever is rounded.
     unit: i32,
+    sizes: Shift,
 }
 
 /// The arithmetic that decides signs, by the range of the coordinates.
@@ -58,55 +61,47 @@ impl Frame {
     }
 
     fn with(vertices: &[Point], round: bool) -> Frame {
-        let (mut top, mut low) = (i32::MIN, i32::MAX);
-        for &x in vertices.iter().flatten() {
-            if x != 0.0 && x.is_finite() {
-                let bits = x.to_bits();
-                let field = ((bits >> 52) & 0x7ff) as i32;
-                let fraction = bits & ((1 << 52) - 1);
-                let (whole, unit) = match field {
-                    0 => (fraction, -1074),
-                    _ => (fraction | 1 << 52, field - 1075),
-                };
-                top = top.max(unit + 64 - whole.leading_zeros() as i32);
-                low = low.min(unit + whole.trailing_zeros() as i32);
-            }
-        }
+        let (top, low) = (vertices.par_iter().flatten().copied())
+            .filter_map(bits)
+            .reduce(|| (i32::MIN, i32::MAX), |a, b| (a.0.max(b.0), a.1.min(b.1)));
         let (exponent, kernel) = match (top, low) {
             (i32::MIN, _) => (0, Kernel::Lattice),
             _ if low - top >= LATTICE => (-top, Kernel::Lattice),
             _ if round || low - top >= -1074 => (-top, Kernel::Wide),
             _ => (0, Kernel::Extreme),
         };
-        let points = vertices
-            .iter()
+        let unit = if top == i32::MIN { 0 } else { -top };
+        let inward = Shift::by(exponent);
+        let points = (vertices.par_iter())
             .map(|p| match p.iter().all(|x| x.is_finite()) {
-                true => p.map(|x| shift(x, exponent)),
+                true => p.map(|x| inward.of(x)),
                 false => [0.0; 3],
             })
             .collect();
         Frame {
             points,
             kernel,
-            exponent,
-            unit: if top == i32::MIN { 0 } else { -top },
+            inward,
+            outward: Shift::by(-exponent),
+            unit,
+            sizes: Shift::by(unit),
         }
     }
 
     /// A point of the mesh's units in the frame's.
     pub fn enter(&self, p: Point) -> Point {
-        p.map(|x| shift(x, self.exponent))
+        p.map(|x| self.inward.of(x))
     }
 
     /// A length of the frame in the mesh's units.
     pub fn leave(&self, length: f64) -> f64 {
-        shift(length, -self.exponent)
+        self.outward.of(length)
     }
 
     /// A point in units in which no size overflows, and none that matters
     /// underflows. They are those of the frame, but for [`Kernel::Extreme`].
     pub fn enter_sizes(&self, p: Point) -> Point {
-        p.map(|x| shift(x, self.unit))
+        p.map(|x| self.sizes.of(x))
     }
 
     /// The power of two that takes volumes of the mesh's units to those.
@@ -126,10 +121,38 @@ impl Frame {
     }
 }
 
+/// The power of two above the highest bit of a finite number that is not
+/// zero, and that of the lowest.
+fn bits(x: f64) -> Option<(i32, i32)> {
+    let bits = x.to_bits();
+    let fraction = bits & ((1 << 52) - 1);
+    let (whole, unit) = match ((bits >> 52) & 0x7ff) as i32 {
+        0 => (fraction, -1074),
+        0x7ff => return None,
+        field => (fraction | 1 << 52, field - 1075),
+    };
+    let high = unit + 64 - whole.leading_zeros() as i32;
+    (whole != 0).then_some((high, unit + whole.trailing_zeros() as i32))
+}
+
 /// `x` times two to the power `e`, for powers beyond the range of doubles too.
 pub(super) fn shift(x: f64, e: i32) -> f64 {
-    let third = e / 3;
-    x * 2f64.powi(third) * 2f64.powi(third) * 2f64.powi(e - 2 * third)
+    Shift::by(e).of(x)
+}
+
+/// Multiplication by a power of two, in three steps.
+#[derive(Clone, Copy)]
+struct Shift(f64, f64);
+
+impl Shift {
+    fn by(e: i32) -> Shift {
+        let third = e / 3;
+        Shift(2f64.powi(third), 2f64.powi(e - 2 * third))
+    }
+
+    fn of(&self, x: f64) -> f64 {
+        x * self.0 * self.0 * self.1
+    }
 }
 
 fn sign(x: f64) -> i8 {

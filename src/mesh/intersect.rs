@@ -21,6 +21,8 @@
 //!    line separates them strictly.
 
 use super::frame::{drop_axis, Kernel};
+use crate::geom::vec3::plain::{larger, norm, smaller};
+use crate::geom::vec3::{add, scale, sub};
 use crate::geom::Point;
 
 /// How two triangles of positive area meet.
@@ -56,6 +58,9 @@ pub(super) fn contact(kernel: Kernel, a: &[Point; 3], b: &[Point; 3], twins: &Tw
         Some(_) => 0,
         None => kernel.orient3d(b[0], b[1], b[2], a[i]),
     };
+    if kernel != Kernel::Extreme && shared < 2 && apart_at(a, b, twins) {
+        return apart;
+    }
     let signs_a = [above_b(0), above_b(1), above_b(2)];
     if one_side(&signs_a, shared) {
         return apart;
@@ -103,6 +108,44 @@ pub(super) fn contact(kernel: Kernel, a: &[Point; 3], b: &[Point; 3], twins: &Tw
         2 => Contact::Shared,
         1 if point => Contact::Shared,
         _ => Contact::Touching,
+    }
+}
+
+/// Whether a plane surely separates two triangles that share at most a corner
+/// (through that corner, if there is one): a filter before anything exact. The
+/// plane stands across the line between their middles.
+fn apart_at(a: &[Point; 3], b: &[Point; 3], twins: &Twins) -> bool {
+    let corner = twins.iter().position(|t| t.is_some());
+    let at = a[corner.unwrap_or(0)];
+    let (u, v) = (a.map(|p| sub(p, at)), b.map(|p| sub(p, at)));
+    let sum = |t: &[Point; 3]| add(add(t[0], t[1]), t[2]);
+    let (mut s, mut t) = (sum(&u), sum(&v));
+    if corner.is_some() {
+        // Seen from the corner only the directions count.
+        let (m, n) = (norm(s), norm(t));
+        (s, t) = (scale(s, n), scale(t, m));
+    }
+    let normal = sub(s, t);
+    // The differences and each product are off by less than 2^-52 of their
+    // size, the sums by as much again.
+    let heights = |t: &[Point; 3], skip: Option<usize>| {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for k in (0..3).filter(|&k| Some(k) != skip) {
+            let products: Point = std::array::from_fn(|i| normal[i] * t[k][i]);
+            let size = products[0].abs() + products[1].abs() + products[2].abs();
+            let height = products[0] + products[1] + products[2];
+            let off = 1e-15 * size + 1e-300;
+            low = smaller(low, height - off);
+            high = larger(high, height + off);
+        }
+        (low, high)
+    };
+    let same = corner.and_then(|k| twins[k]).map(usize::from);
+    let (low, _) = heights(&u, corner);
+    let (_, high) = heights(&v, same);
+    match corner {
+        Some(_) => low > 0.0 && high < 0.0,
+        None => low > high,
     }
 }
 

@@ -5,7 +5,8 @@ use super::soup::{place, Faces, Triangles};
 use super::topology::Topology;
 use super::wide::Sum;
 use super::PolygonMesh;
-use crate::geom::vec3::{cross, dot, norm, norm_sq, sub};
+use crate::geom::vec3::plain::{dot, larger, norm, norm_sq};
+use crate::geom::vec3::{cross, sub};
 use crate::geom::{Bounds, Point};
 
 /// Volume and area of a set of faces.
@@ -95,26 +96,29 @@ fn settle(
 
 /// Smallest angle and the histogram of aspects of all triangles.
 pub(super) fn shape(points: &[Point], frame: &Frame, triangles: &Triangles) -> Shape {
-    let mut shape = Shape {
-        smallest_angle: None,
-        aspects: [0; 7],
-    };
+    let mut aspects = [0; 7];
+    // The tangent of the smallest angle, and the sine and cosine it comes from.
+    let mut least = (f64::INFINITY, 0.0, 0.0);
     for &t in &triangles.corners {
         let [a, b, c] = place(points, t).map(|p| frame.enter_sizes(p));
-        let mut sides = [sub(c, b), sub(a, c), sub(b, a)];
+        let sides = [sub(c, b), sub(a, c), sub(b, a)];
+        let squares = sides.map(norm_sq);
         let doubled = norm(cross(sides[1], sides[2]));
-        sides.sort_by(|x, y| norm_sq(*x).total_cmp(&norm_sq(*y)));
-        let aspect = norm_sq(sides[2]) / doubled;
+        let aspect = larger(larger(squares[0], squares[1]), squares[2]) / doubled;
         let class = ASPECTS.iter().position(|&most| aspect <= most);
-        shape.aspects[class.unwrap_or(ASPECTS.len())] += 1;
+        aspects[class.unwrap_or(ASPECTS.len())] += 1;
         // The smallest angle lies between the two longer sides.
-        let angle = doubled.atan2(dot(sides[1], sides[2]).abs()).to_degrees();
-        shape.smallest_angle = Some(match shape.smallest_angle {
-            Some(least) => least.min(angle),
-            None => angle,
-        });
+        let shortest = (1..3).fold(0, |k, j| if squares[j] < squares[k] { j } else { k });
+        let cosine = dot(sides[(shortest + 1) % 3], sides[(shortest + 2) % 3]).abs();
+        let tangent = if doubled > 0.0 { doubled / cosine } else { 0.0 };
+        if tangent < least.0 {
+            least = (tangent, doubled, cosine);
+        }
     }
-    shape
+    Shape {
+        smallest_angle: (least.0 < f64::INFINITY).then(|| least.1.atan2(least.2).to_degrees()),
+        aspects,
+    }
 }
 
 /// The middle of the box of the vertices that are finite.
@@ -153,11 +157,16 @@ pub(super) fn finite_bounds<'a>(points: impl Iterator<Item = &'a Point>) -> Opti
 pub fn components(mesh: &PolygonMesh) -> (Vec<u32>, usize) {
     let faces = Faces::of(mesh, |_, _| ());
     let topology = Topology::of(mesh.vertices.len(), &faces);
+    (labels(mesh, &faces, &topology), topology.shell_edges.len())
+}
+
+/// The shell of each face, `u32::MAX` for those that cannot be walked.
+pub(super) fn labels(mesh: &PolygonMesh, faces: &Faces, topology: &Topology) -> Vec<u32> {
     let mut labels = vec![u32::MAX; mesh.face_count()];
     for (&number, &shell) in faces.number.iter().zip(&topology.shell) {
         labels[number as usize] = shell;
     }
-    (labels, topology.shell_edges.len())
+    labels
 }
 
 /// The signed volume that each shell of [`components`] encloses, in cubed
@@ -166,13 +175,24 @@ pub fn components(mesh: &PolygonMesh) -> (Vec<u32>, usize) {
 pub fn component_volumes(mesh: &PolygonMesh) -> Vec<f64> {
     let faces = Faces::of(mesh, |_, _| ());
     let topology = Topology::of(mesh.vertices.len(), &faces);
-    let origin = middle(&finite_bounds(mesh.vertices.iter()));
     let frame = Frame::new(&mesh.vertices);
+    let triangles = faces.triangles(&frame);
+    volumes(mesh, &topology, &frame, &triangles)
+}
+
+/// The signed volume of each shell.
+pub(super) fn volumes(
+    mesh: &PolygonMesh,
+    topology: &Topology,
+    frame: &Frame,
+    triangles: &Triangles,
+) -> Vec<f64> {
+    let origin = middle(&finite_bounds(mesh.vertices.iter()));
     sizes(
         &mesh.vertices,
         origin,
-        &frame,
-        &faces.triangles(&frame),
+        frame,
+        triangles,
         &topology.shell,
         topology.shell_edges.len(),
     )

@@ -30,6 +30,7 @@ pub use deviation::{deviation, Deviation};
 pub use distance::Surface;
 pub use measure::{component_volumes, components};
 pub use nesting::enclosing;
+pub(crate) use nesting::Anatomy;
 pub use report::{Counts, Finding, Report, Shell};
 
 use crate::geom::Point;

@@ -8,7 +8,8 @@
 use super::bvh::Cuboid;
 use super::crossing::{coincidences, flat, Field};
 use super::frame::{Frame, Kernel};
-use super::soup::{place, Faces};
+use super::measure::{labels, volumes};
+use super::soup::{place, Faces, Triangles};
 use super::topology::Topology;
 use super::PolygonMesh;
 use crate::geom::Point;
@@ -45,6 +46,19 @@ fn around(field: &Field, shells: &[u32], closed: &[bool]) -> Vec<Option<Vec<u32>
 pub fn enclosing(mesh: &PolygonMesh) -> Vec<Option<Vec<u32>>> {
     let faces = Faces::of(mesh, |_, _| ());
     let topology = Topology::of(mesh.vertices.len(), &faces);
+    let frame = Frame::new(&mesh.vertices);
+    let triangles = faces.triangles(&frame);
+    enclosing_of(mesh, &faces, &topology, &frame, &triangles)
+}
+
+/// The same for a mesh taken apart.
+fn enclosing_of(
+    mesh: &PolygonMesh,
+    faces: &Faces,
+    topology: &Topology,
+    frame: &Frame,
+    triangles: &Triangles,
+) -> Vec<Option<Vec<u32>>> {
     let mut closed = vec![true; topology.shell_edges.len()];
     for bad in &topology.bad {
         let corner = topology.bad_corners[bad.corners.0 as usize];
@@ -57,15 +71,35 @@ pub fn enclosing(mesh: &PolygonMesh) -> Vec<Option<Vec<u32>>> {
     let finite: Vec<bool> = (mesh.vertices.iter())
         .map(|p| p.iter().all(|x| x.is_finite()))
         .collect();
-    let frame = Frame::new(&mesh.vertices);
-    let triangles = faces.triangles(&frame);
-    let mut skip = flat(&frame, &triangles);
+    let mut skip = flat(frame, triangles);
     for (skip, t) in skip.iter_mut().zip(&triangles.corners) {
         *skip |= !t.iter().all(|&v| finite[v as usize]);
     }
-    let (canonical, _) = coincidences(&frame, &finite);
-    let field = Field::new(&frame, &canonical, &triangles, &skip);
+    let (canonical, _) = coincidences(frame, &finite);
+    let field = Field::new(frame, &canonical, triangles, &skip);
     around(&field, &topology.shell, &closed)
+}
+
+/// A mesh taken apart, by [`super::components`],
+/// [`super::component_volumes`] and [`enclosing`] at once.
+pub(crate) struct Anatomy {
+    pub shell_of_face: Vec<u32>,
+    pub volumes: Vec<f64>,
+    pub around: Vec<Option<Vec<u32>>>,
+}
+
+impl Anatomy {
+    pub fn of(mesh: &PolygonMesh) -> Anatomy {
+        let faces = Faces::of(mesh, |_, _| ());
+        let topology = Topology::of(mesh.vertices.len(), &faces);
+        let frame = Frame::new(&mesh.vertices);
+        let triangles = faces.triangles(&frame);
+        Anatomy {
+            shell_of_face: labels(mesh, &faces, &topology),
+            volumes: volumes(mesh, &topology, &frame, &triangles),
+            around: enclosing_of(mesh, &faces, &topology, &frame, &triangles),
+        }
+    }
 }
 
 /// For each shell a vertex at whose position no other shell has one.

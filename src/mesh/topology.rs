@@ -46,6 +46,9 @@ pub(super) struct Topology {
     pub shell_edges: Vec<u64>,
     /// Number of components by shared vertices.
     pub components: u32,
+    /// For each corner the one whose half-edge runs the other way, where every
+    /// edge has two.
+    pub twins: Option<Vec<u32>>,
 }
 
 /// Disjoint sets of `0..n`; the smallest member stands for a set.
@@ -101,12 +104,67 @@ fn number(representatives: &mut [u32]) -> u32 {
 
 impl Topology {
     pub fn of(vertices: usize, faces: &Faces) -> Topology {
+        match twins(vertices, faces) {
+            Some(twins) => Topology::closed(vertices, faces, twins),
+            None => Topology::general(vertices, faces),
+        }
+    }
+
+    /// Where each edge has two half-edges of opposite direction.
+    fn closed(vertices: usize, faces: &Faces, twins: Vec<u32>) -> Topology {
         let corners = &faces.corners;
         let next = faces.next();
-        let mut face_of = vec![0u32; corners.len()];
-        for (f, run) in faces.starts.windows(2).enumerate() {
-            face_of[run[0] as usize..run[1] as usize].fill(f as u32);
+        let mut fan = vec![u32::MAX; corners.len()];
+        let mut fans = vec![0u32; vertices];
+        for first in 0..corners.len() {
+            let mut c = first;
+            while fan[c] == u32::MAX {
+                fan[c] = first as u32;
+                c = next[twins[c] as usize] as usize;
+            }
+            fans[corners[first] as usize] += (fan[first] as usize == first) as u32;
         }
+        let joined = joined(vertices, faces);
+        let components = (0..vertices).filter(|&v| fans[v] > 0 && joined[v] as usize == v);
+        let components = components.count() as u32;
+        let mut shell: Vec<u32>;
+        let count;
+        if fans.iter().all(|&n| n < 2) {
+            // Faces that share a vertex are joined by edges around it.
+            shell = faces.iter().map(|face| joined[face[0] as usize]).collect();
+            count = number_by_first(&mut shell, vertices);
+        } else {
+            let face_of = face_of(faces);
+            let mut shells = Sets::new(faces.len());
+            for (c, &t) in twins.iter().enumerate() {
+                shells.join(face_of[c], face_of[t as usize]);
+            }
+            shell = shells.flatten();
+            count = number(&mut shell);
+        }
+        let mut shell_edges = vec![0u64; count as usize];
+        for (face, &s) in faces.iter().zip(&shell) {
+            shell_edges[s as usize] += face.len() as u64;
+        }
+        shell_edges.iter_mut().for_each(|n| *n /= 2);
+        Topology {
+            edges: corners.len() as u64 / 2,
+            bad: Vec::new(),
+            bad_corners: Vec::new(),
+            fan,
+            fans,
+            shell,
+            shell_edges,
+            components,
+            twins: Some(twins),
+        }
+    }
+
+    /// Whatever the edges.
+    fn general(vertices: usize, faces: &Faces) -> Topology {
+        let corners = &faces.corners;
+        let next = faces.next();
+        let face_of = face_of(faces);
         let ends = |c: usize| {
             let (s, t) = (corners[c], corners[next[c] as usize]);
             (s.min(t), s.max(t))
@@ -187,6 +245,7 @@ impl Topology {
             shell,
             shell_edges,
             components: by_vertices(vertices, faces),
+            twins: None,
         }
     }
 
@@ -221,17 +280,94 @@ impl Topology {
     }
 }
 
-/// The number of components of faces that share vertices.
-fn by_vertices(vertices: usize, faces: &Faces) -> u32 {
-    let mut sets = Sets::new(vertices);
-    let mut used = vec![false; vertices];
-    for face in faces.iter() {
-        for &v in face {
-            sets.join(face[0], v);
-            used[v as usize] = true;
+/// The half-edge that runs the other way along each corner's edge, if every
+/// edge has just two. Those that run upward lie in buckets by their tails; the
+/// others look theirs up.
+fn twins(vertices: usize, faces: &Faces) -> Option<Vec<u32>> {
+    let corners = &faces.corners;
+    let next = faces.next();
+    let ends = |c: usize| (corners[c], corners[next[c] as usize]);
+    let mut first = vec![0u32; vertices + 2];
+    let mut upward = 0;
+    for c in 0..corners.len() {
+        let (tail, head) = ends(c);
+        first[tail as usize + 2] += (tail < head) as u32;
+        upward += (tail < head) as usize;
+    }
+    if 2 * upward != corners.len() {
+        return None;
+    }
+    for v in 2..first.len() {
+        first[v] += first[v - 1];
+    }
+    let mut slots = vec![(0, 0); upward];
+    for c in 0..corners.len() {
+        let (tail, head) = ends(c);
+        if tail < head {
+            let at = &mut first[tail as usize + 1];
+            slots[*at as usize] = (head, c as u32);
+            *at += 1;
         }
     }
-    let roots = sets.flatten();
+    let mut twins = vec![u32::MAX; corners.len()];
+    for c in 0..corners.len() {
+        let (tail, head) = ends(c);
+        if tail >= head {
+            let bucket = first[head as usize] as usize..first[head as usize + 1] as usize;
+            let &(_, up) = slots[bucket].iter().find(|(v, _)| *v == tail)?;
+            let other = &mut twins[up as usize];
+            if *other != u32::MAX {
+                return None;
+            }
+            *other = c as u32;
+            twins[c] = up;
+        }
+    }
+    Some(twins)
+}
+
+/// The face of each corner.
+fn face_of(faces: &Faces) -> Vec<u32> {
+    let mut face_of = vec![0u32; faces.corners.len()];
+    for (f, run) in faces.starts.windows(2).enumerate() {
+        face_of[run[0] as usize..run[1] as usize].fill(f as u32);
+    }
+    face_of
+}
+
+/// For each vertex the least one that faces join it to.
+fn joined(vertices: usize, faces: &Faces) -> Vec<u32> {
+    let mut sets = Sets::new(vertices);
+    for face in faces.iter() {
+        for &v in &face[1..] {
+            sets.join(face[0], v);
+        }
+    }
+    sets.flatten()
+}
+
+/// Labels `0..count` in order of first appearance, for any below `range`.
+fn number_by_first(labels: &mut [u32], range: usize) -> u32 {
+    let mut numbers = vec![u32::MAX; range];
+    let mut count = 0;
+    for label in labels {
+        let number = &mut numbers[*label as usize];
+        if *number == u32::MAX {
+            *number = count;
+            count += 1;
+        }
+        *label = *number;
+    }
+    count
+}
+
+/// The number of components of faces that share vertices.
+fn by_vertices(vertices: usize, faces: &Faces) -> u32 {
+    let mut used = vec![false; vertices];
+    for &v in &faces.corners {
+        used[v as usize] = true;
+    }
+    let roots = joined(vertices, faces);
     let is_root = |&v: &usize| used[v] && roots[v] as usize == v;
     (0..vertices).filter(is_root).count() as u32
 }
@@ -264,5 +400,37 @@ mod tests {
         assert_eq!(t.shell, [0, 1]);
         assert_eq!(t.shell_edges, [4, 4]);
         assert_eq!(t.loops(&faces), [1, 1]);
+    }
+
+    /// Closed meshes, told both ways: two tetrahedra apart, sharing a vertex,
+    /// and two triangles back to back.
+    #[test]
+    fn the_quick_way_tells_the_same_of_closed_meshes() {
+        let tetrahedron = |v: [u32; 4]| {
+            [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|f| f.map(|k: usize| v[k]))
+        };
+        let apart = [tetrahedron([1, 2, 3, 4]), tetrahedron([8, 5, 7, 6])].concat();
+        let pinched = [tetrahedron([4, 2, 3, 1]), tetrahedron([4, 5, 7, 6])].concat();
+        let flat = vec![[0, 1, 2], [2, 1, 0]];
+        for (list, fans) in [(apart, 1), (pinched, 2), (flat, 1)] {
+            let list: Vec<&[u32]> = list.iter().map(|t| &t[..]).collect();
+            let (quick, faces) = topology(9, &list);
+            let slow = Topology::general(9, &faces);
+            assert!(quick.twins.is_some() && slow.bad.is_empty());
+            assert_eq!(quick.fans.iter().max(), Some(&fans));
+            assert_eq!(quick.edges, slow.edges);
+            assert_eq!(quick.fan, slow.fan);
+            assert_eq!(quick.fans, slow.fans);
+            assert_eq!(quick.shell, slow.shell);
+            assert_eq!(quick.shell_edges, slow.shell_edges);
+            assert_eq!(quick.components, slow.components);
+        }
+    }
+
+    #[test]
+    fn four_faces_at_an_edge_are_no_quick_way() {
+        let (t, _) = topology(4, &[&[0, 1, 2], &[2, 1, 0], &[0, 1, 3], &[3, 1, 0]]);
+        assert!(t.twins.is_none());
+        assert_eq!(t.bad.len(), 1);
     }
 }

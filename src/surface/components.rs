@@ -6,7 +6,7 @@
 //! to the smallest part around it and goes where that goes. What lies free
 //! within a cavity is a part of its own: it goes when the cavity is filled.
 
-use crate::mesh::{component_volumes, components, enclosing, PolygonMesh};
+use crate::mesh::{Anatomy, PolygonMesh};
 
 use super::raw::Crust;
 
@@ -75,22 +75,7 @@ impl Selection {
     }
 }
 
-/// A surface taken apart. `shell` is the number among parts and cavities.
-struct Anatomy {
-    shell_of_face: Vec<u32>,
-    volumes: Vec<f64>,
-    around: Vec<Option<Vec<u32>>>,
-}
-
 impl Anatomy {
-    fn of(mesh: &PolygonMesh) -> Anatomy {
-        Anatomy {
-            shell_of_face: components(mesh).0,
-            volumes: component_volumes(mesh),
-            around: enclosing(mesh),
-        }
-    }
-
     fn len(&self) -> usize {
         self.volumes.len()
     }

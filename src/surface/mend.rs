@@ -39,13 +39,14 @@ use super::mend_coarsen::{coarsen, Coarsened};
 use super::mend_local::{mend, Mended, LEVELS};
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
-use super::mend_place::{settle, unlevel};
+use super::mend_place::{settle, unlevel, Near, Sides};
 use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
-use crate::context::{Cancelled, Context};
-use crate::geom::vec3::{norm, scale, sub};
+use crate::context::{Cancelled, Context, Stage};
 use crate::geom::{Ball, Point};
 use crate::mesh::clash::Clash;
+use crate::stats::Laps;
+use rayon::prelude::*;
 
 /// The surface never moves by more than this share of the spacing, nor of the
 /// radius of the balls beside it.
@@ -86,24 +87,22 @@ pub struct Mending {
     pub drawn_apart: usize,
     /// Pairs of triangles that crossed or touched, and triangles of no area.
     pub found: usize,
-    /// Of these, how many are left.
-    pub left: Vec<[u32; 2]>,
+    /// Those of them that are left, by the balls of the faces they lie on.
+    pub left: Vec<[[u32; 2]; 2]>,
     /// Changes made to mend them.
     pub changes: usize,
     /// Samples that had to go.
     pub samples_lost: usize,
     /// Rounds of mending.
     pub rounds: usize,
+    /// Seconds by step, in order.
+    pub seconds: Vec<(&'static str, f64)>,
 }
 
 /// Mends a closed manifold crust of triangles.
-pub fn mend_crust(
-    crust: &Crust,
-    options: &MendOptions,
-    cx: &Context,
-) -> Result<Mending, Cancelled> {
+pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<Mending, Cancelled> {
+    let mut laps = Laps::start();
     let (clash, mut points) = Clash::new(&crust.mesh.vertices);
-    let source = (0..crust.mesh.face_count() as u32).collect();
     let round = |p: Point| match options.single {
         true => clash.enter(clash.leave(p).map(|x| f64::from(x as f32))),
         false => p,
@@ -111,42 +110,58 @@ pub fn mend_crust(
     if options.single {
         points.iter_mut().for_each(|p| *p = round(*p));
     }
-    let mut mesh = TriMesh::new(crust, points, source);
-    let shells = Shells::of(&mesh);
+    cx.advance(Stage::Crust, 1, 3)?;
+    let mut mesh = TriMesh::new(&crust, &points);
+    drop(points);
+    let face_balls = crust.face_balls;
+    drop(crust.mesh);
+    laps.lap("half-edges");
+    cx.advance(Stage::Crust, 1, 3)?;
     let mut done = Mending::default();
     let length = |l: f64| clash.enter([l, 0.0, 0.0])[0];
-    let spacing = spread(&mesh, |s| length((options.spacing)(s)));
+    let near = Near::of(&mesh);
+    let mut spacing = near.spread(&mesh, |s| length((options.spacing)(s)));
+    laps.lap("spacing");
     if options.flatness > 0.0 {
-        let radii = radii(&mesh, |t| {
-            let balls = crust.face_balls[t as usize].iter().filter(|&&b| b != NONE);
-            let radii = balls.filter_map(|&b| Some(length((options.ball)(b)?.radius)));
-            radii.fold(f64::INFINITY, f64::min)
-        });
-        let error = |h: f64, r: f64| (h * h / (2.0 * r)).min(MOST * h).min(MOST * r);
-        let limit: Vec<f64> = (spacing.iter().zip(&radii))
-            .map(|(&h, &r)| error(h, r))
+        let last = face_balls.iter().flatten().filter(|&&b| b != NONE).max();
+        let balls: Vec<Option<Ball>> = (0..last.map_or(0, |b| b + 1))
+            .into_par_iter()
+            .map(|b| (options.ball)(b))
             .collect();
-        let outward = |t: u32| {
-            let [inner, outer] = crust.face_balls[t as usize];
-            let (i, o) = ((options.ball)(inner)?.centre, (options.ball)(outer)?.centre);
-            let d = sub(o, i);
-            let size = norm(d);
-            (size > 0.0 && size.is_finite()).then(|| scale(d, 1.0 / size))
-        };
-        done.settled = settle(&mut mesh, &outward, &limit, &round);
+        let sides = Sides::of(&mesh, &|t| {
+            let pair = face_balls[mesh.source[t as usize] as usize];
+            pair.map(|b| balls.get(b as usize).copied().flatten())
+        });
+        drop(balls);
+        cx.advance(Stage::Crust, 1, 3)?;
+        let error = |h: f64, r: f64| (h * h / (2.0 * r)).min(MOST * h).min(MOST * r);
+        let limit: Vec<f64> = (spacing.iter().zip(&sides.radii))
+            .map(|(&h, &r)| error(h, length(f64::from(r))))
+            .collect();
+        laps.lap("limits");
+        done.settled = settle(&mut mesh, &sides, &near, &limit, &round);
+        drop((sides, near));
+        laps.lap("settle");
         let tolerance: Vec<f64> = (limit.iter().zip(&spacing))
             .map(|(e, h)| (options.flatness * e).max(NOTHING * h))
             .collect();
+        drop(limit);
         let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
+        cx.advance(Stage::Crust, 1, 3)?;
+        mesh.compact(&mut spacing);
+        laps.lap("coarsen");
         unlevel(&mut mesh, UNLEVEL, &spacing, &round);
     }
+    let shells = Shells::of(&mesh);
     let moved = draw_apart(&mut mesh, &round);
     done.drawn_apart = moved.len();
     mesh.free(&moved);
+    laps.lap("draw apart");
     let tree = clash.tree(&mesh.points, &mesh.tris);
     let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
     done.found = pairs.len();
+    laps.lap("search");
     let gentle = LEVELS - 1;
     let (first, mut left) = mend(&mut mesh, &clash, tree, pairs, 0.0, gentle, &round, cx)?;
     let mut more = Mended::default();
@@ -158,6 +173,7 @@ pub fn mend_crust(
         let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
         (more, left) = mend(&mut mesh, &clash, tree, pairs, 0.0, LEVELS, &round, cx)?;
     }
+    laps.lap("mend");
     if left.is_empty() {
         let least = least_area(&mesh);
         let pairs = thin(&mesh, least);
@@ -175,14 +191,11 @@ pub fn mend_crust(
     done.changes += first.changes + more.changes;
     done.samples_lost += more.samples_lost;
     done.rounds = first.rounds + more.rounds;
-    done.left = left.iter().map(|&(s, t)| [s, t]).collect();
-    // The triangles left are told by the faces they come from.
-    for pair in &mut done.left {
-        *pair = pair.map(|t| mesh.source[t as usize]);
-    }
-    let (mended, source) = mesh.finish(&crust.face_balls, |p| clash.leave(p));
-    done.crust = mended;
-    done.source = source;
+    let balls_of = |t: u32| face_balls[mesh.source[t as usize] as usize];
+    done.left = (left.iter()).map(|&(s, t)| [s, t].map(balls_of)).collect();
+    (done.crust, done.source) = mesh.finish(&face_balls, |p| clash.leave(p));
+    laps.lap("finish");
+    done.seconds = laps.seconds;
     Ok(done)
 }
 
@@ -204,49 +217,4 @@ fn around(mesh: &TriMesh, pairs: &[(u32, u32)], spacing: &[f64]) -> Vec<f64> {
         tolerance[v as usize] = MOST * spacing[v as usize];
     }
     tolerance
-}
-
-/// The least radius of the balls whose cells meet at each vertex.
-fn radii(mesh: &TriMesh, radius: impl Fn(u32) -> f64) -> Vec<f64> {
-    let mut least = vec![f64::INFINITY; mesh.points.len()];
-    for (t, tri) in mesh.tris.iter().enumerate() {
-        let r = radius(t as u32);
-        for &v in tri {
-            let known = &mut least[v as usize];
-            *known = known.min(r);
-        }
-    }
-    least
-}
-
-/// The spacing at every vertex: that of its sample, else of the nearest along
-/// edges.
-fn spread(mesh: &TriMesh, spacing: impl Fn(u32) -> f64) -> Vec<f64> {
-    let mut known: Vec<f64> = (mesh.samples.iter())
-        .map(|&s| if s == NONE { f64::INFINITY } else { spacing(s) })
-        .collect();
-    let mut fan = Vec::new();
-    let mut open: Vec<u32> = (0..known.len() as u32)
-        .filter(|&v| known[v as usize] == f64::INFINITY)
-        .collect();
-    while !open.is_empty() {
-        let before = known.clone();
-        let mut grew = false;
-        open.retain(|&v| {
-            mesh.fan(v, &mut fan);
-            let near = fan.iter().map(|&h| before[mesh.head(h) as usize]);
-            let least = near.fold(f64::INFINITY, f64::min);
-            known[v as usize] = least;
-            grew |= least.is_finite();
-            least == f64::INFINITY
-        });
-        if !grew {
-            break;
-        }
-    }
-    known
-        .iter_mut()
-        .filter(|l| !l.is_finite())
-        .for_each(|l| *l = 0.0);
-    known
 }

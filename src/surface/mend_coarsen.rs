@@ -13,8 +13,10 @@
 use super::mend_mesh::{next, prev, TriMesh};
 use super::raw::NONE;
 use crate::context::{Cancelled, Context, Stage};
-use crate::geom::vec3::{add, cross, dist_sq, dot, norm, norm_sq, scale, sub};
+use crate::geom::vec3::plain::{dist_sq, dot, larger, norm, norm_sq, smaller};
+use crate::geom::vec3::{add, cross, scale, sub};
 use crate::geom::Point;
+use rayon::prelude::*;
 
 /// The least cosine of the angle by which a triangle may turn.
 const TURN: f64 = 0.7;
@@ -45,14 +47,15 @@ pub(crate) fn coarsen(
         mesh,
         tolerance,
         moved: vec![0.0; tolerance.len()],
+        round: 0,
+        fresh: vec![0; tolerance.len()],
         fan: Vec::new(),
-        ring: Vec::new(),
-        places: Vec::new(),
-        normals: Vec::new(),
+        ring: Ring::default(),
     };
     let mut done = Coarsened::default();
     let mut todo: Vec<bool> = work.mesh.samples.iter().map(|&s| s == NONE).collect();
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
+        work.round = round as u8;
         let mut collapsed = 0;
         for v in 0..todo.len() as u32 {
             if v % 65536 == 0 {
@@ -60,11 +63,12 @@ pub(crate) fn coarsen(
             }
             if std::mem::take(&mut todo[v as usize]) && work.collapse(v) {
                 collapsed += 1;
-                for &w in &work.ring {
+                for &w in &work.ring.vertices {
                     todo[w as usize] = work.mesh.samples[w as usize] == NONE;
                 }
             }
         }
+        cx.advance(Stage::Crust, 1, 3)?;
         let flipped = work.flips(&mut todo);
         done.collapsed += collapsed;
         done.flipped += flipped;
@@ -80,54 +84,33 @@ struct Work<'a> {
     tolerance: &'a [f64],
     /// How far the surface has moved at each vertex.
     moved: Vec<f64>,
+    round: u8,
+    /// The last round that changed triangles at each vertex, one more where
+    /// edges were turned: the next looks at them too.
+    fresh: Vec<u8>,
     fan: Vec<u32>,
-    /// The neighbours of a vertex; triangle k lies between k and k + 1.
-    ring: Vec<u32>,
-    /// Where they are, the first again at the end.
-    places: Vec<Point>,
-    /// Vector area of each triangle of a fan, its squared size, and whether
-    /// it says which way the surface looks.
-    normals: Vec<(Point, f64, bool)>,
+    ring: Ring,
 }
 
 impl Work<'_> {
     /// Draws `v` into the best of its neighbours, if there is one.
     fn collapse(&mut self, v: u32) -> bool {
-        let mesh = &*self.mesh;
-        mesh.fan(v, &mut self.fan);
-        let n = self.fan.len();
-        if n < 3 {
-            return false;
-        }
-        let p = mesh.at(v);
         let limit = self.tolerance[v as usize] - self.moved[v as usize];
         if limit <= 0.0 {
             return false;
         }
-        self.ring.clear();
-        self.ring.extend(self.fan.iter().map(|&h| mesh.head(h)));
-        self.places.clear();
-        self.places.extend(self.ring.iter().map(|&w| mesh.at(w)));
-        self.places.push(self.places[0]);
-        self.normals.clear();
-        let mut mean = [0.0; 3];
-        let mut worst = GOOD * GOOD;
-        for k in 0..n {
-            let (normal, longest) = area(&[p, self.places[k], self.places[k + 1]]);
-            let size = norm_sq(normal);
-            worst = worst.min(size / (longest * longest));
-            mean = add(mean, normal);
-            // The height over the longest side tells needles.
-            let fat = size > limit * limit * longest;
-            self.normals.push((normal, size, fat));
+        self.mesh.fan(v, &mut self.fan);
+        if self.fan.len() < 3 {
+            return false;
         }
-        let mut best = (worst, 0.0, NONE);
-        for j in 0..n {
-            let Some((quality, distance)) = self.try_collapse(p, j, mean, best.0, limit) else {
+        self.ring.gather(self.mesh, v, &self.fan, limit);
+        let mut best = (self.ring.worst.min(GOOD * GOOD), 0.0, NONE);
+        for (j, &h) in self.fan.iter().enumerate() {
+            let Some((quality, distance_sq)) = self.ring.try_collapse(j, best.0, limit) else {
                 continue;
             };
-            if self.mesh.can_collapse(self.fan[j], &self.fan) {
-                best = (quality, distance, self.fan[j]);
+            if self.mesh.can_collapse(h, &self.ring.vertices) {
+                best = (quality, distance_sq, h);
             }
         }
         let (_, distance_sq, h) = best;
@@ -136,98 +119,64 @@ impl Work<'_> {
         }
         let total = self.moved[v as usize] + distance_sq.sqrt();
         self.mesh.collapse(h, &self.fan);
-        for &w in &self.ring {
+        for &w in &self.ring.vertices {
             let moved = &mut self.moved[w as usize];
             *moved = moved.max(total);
+            self.fresh[w as usize] = self.round;
         }
         true
     }
 
-    /// The squared quality of the triangles if the vertex at `p` is drawn
-    /// into neighbour `j` and its squared distance from them; `None` if some
-    /// are no better than `least` or turn over, or the distance is beyond the
-    /// limit.
-    fn try_collapse(
-        &self,
-        p: Point,
-        j: usize,
-        mean: Point,
-        least: f64,
-        limit: f64,
-    ) -> Option<(f64, f64)> {
-        let n = self.ring.len();
-        let to = self.places[j];
-        let mut quality = f64::INFINITY;
-        let others = (j + 1..n).chain(0..j.saturating_sub(1));
-        let others = others.filter(|&k| k + 1 != j + n);
-        for k in others.clone() {
-            let (normal, longest) = area(&[to, self.places[k], self.places[k + 1]]);
-            let size = norm_sq(normal);
-            quality = quality.min(size / (longest * longest));
-            if quality <= least {
-                return None;
-            }
-            let (old, old_size, fat) = self.normals[k];
-            let turned = if fat {
-                turns(dot(normal, old), TURN, size * old_size)
-            } else {
-                turns(dot(normal, mean), NEEDLE_TURN, size * norm_sq(mean))
-            };
-            if turned {
-                return None;
-            }
-        }
-        // The neighbour itself is a point of the triangles.
-        let mut distance_sq = dist_sq(p, to);
-        for k in others {
-            distance_sq = distance_sq.min(point_triangle_sq(
-                p,
-                &[to, self.places[k], self.places[k + 1]],
-            ));
-        }
-        if distance_sq > limit * limit {
-            return None;
-        }
-        // Nor may the new edges leave the old triangles.
-        for k in (j + 2..j + n - 1).map(|k| k % n) {
-            let middle = scale(add(to, self.places[k]), 0.5);
-            let mut off = f64::INFINITY;
-            for i in 0..n {
-                let t = [p, self.places[i], self.places[i + 1]];
-                off = off.min(point_triangle_sq(middle, &t));
-                if off <= distance_sq {
-                    break;
-                }
-            }
-            if off > limit * limit {
-                return None;
-            }
-            distance_sq = distance_sq.max(off);
-        }
-        Some((quality, distance_sq))
-    }
-
-    /// Turns edges that make better triangles; returns how many.
+    /// Turns edges of triangles that are new if that makes better ones;
+    /// returns how many.
     fn flips(&mut self, todo: &mut [bool]) -> usize {
         let mut flipped = 0;
+        let mesh = &*self.mesh;
+        let mut qualities: Vec<f32> = (0..mesh.tris.len() as u32)
+            .into_par_iter()
+            .map(|t| match mesh.alive(t) {
+                true => quality(&mesh.place(t)) as f32,
+                false => f32::INFINITY,
+            })
+            .collect();
         for h in 0..self.mesh.twin.len() as u32 {
-            if !self.mesh.alive(h / 3) || h > self.mesh.twin(h) {
+            let t = self.mesh.twin(h);
+            if h > t || !self.mesh.alive(h / 3) {
                 continue;
             }
-            if self.flip_helps(h) && self.mesh.can_flip(h) {
-                let t = self.mesh.twin(h);
-                for g in [h, next(h), prev(h), prev(t)] {
-                    let v = self.mesh.tail(g);
-                    todo[v as usize] |= self.mesh.samples[v as usize] == NONE;
-                }
-                self.mesh.flip(h);
-                flipped += 1;
+            let before = f64::from(qualities[h as usize / 3].min(qualities[t as usize / 3]));
+            if before > FINE * FINE
+                || !(self.is_new(h / 3) || self.is_new(t / 3))
+                || !self.flip_helps(h, before)
+                || !self.mesh.can_flip(h)
+            {
+                continue;
             }
+            for g in [h, next(h), prev(h), prev(t)] {
+                let v = self.mesh.tail(g);
+                todo[v as usize] |= self.mesh.samples[v as usize] == NONE;
+                self.fresh[v as usize] = self.round + 1;
+            }
+            self.mesh.flip(h);
+            for t in [h / 3, t / 3] {
+                qualities[t as usize] = quality(&self.mesh.place(t)) as f32;
+            }
+            flipped += 1;
         }
         flipped
     }
 
-    fn flip_helps(&self, h: u32) -> bool {
+    /// Whether a triangle may have changed since edges were last turned.
+    fn is_new(&self, t: u32) -> bool {
+        let corners = self.mesh.tris[t as usize];
+        corners
+            .iter()
+            .all(|&v| self.fresh[v as usize] >= self.round)
+    }
+
+    /// Whether turning the edge of `h` is within the tolerance and makes
+    /// triangles better than the squared quality `before`.
+    fn flip_helps(&self, h: u32, before: f64) -> bool {
         let mesh = &*self.mesh;
         let t = mesh.twin(h);
         let ids = [
@@ -237,17 +186,8 @@ impl Work<'_> {
             mesh.tail(prev(t)),
         ];
         let [u, v, a, b] = ids.map(|v| mesh.at(v));
-        let (n1, l1) = area(&[u, v, a]);
-        let (n2, l2) = area(&[v, u, b]);
-        let (m1, k1) = area(&[b, a, u]);
-        let (m2, k2) = area(&[a, b, v]);
-        let quality = |n: Point, longest: f64| norm_sq(n) / (longest * longest);
-        let before = quality(n1, l1).min(quality(n2, l2));
-        if before > FINE * FINE {
-            return false;
-        }
-        let after = quality(m1, k1).min(quality(m2, k2));
-        if after <= 1.2 * before {
+        let helps = |t: &[Point; 3]| quality(t) > 1.2 * before;
+        if !helps(&[b, a, u]) || !helps(&[a, b, v]) {
             return false;
         }
         let tolerance = ids
@@ -260,10 +200,204 @@ impl Work<'_> {
         if size <= 0.0 || dot(sub(a, u), normal).abs() > tolerance * size {
             return false;
         }
-        let mean = add(n1, n2);
-        let size = norm_sq(mean);
-        !turns(dot(m1, mean), TURN, norm_sq(m1) * size)
-            && !turns(dot(m2, mean), TURN, norm_sq(m2) * size)
+        let mean = add(area(&[u, v, a]).0, area(&[v, u, b]).0);
+        [[b, a, u], [a, b, v]].iter().all(|t| {
+            let normal = area(t).0;
+            !turns(dot(normal, mean), TURN, norm_sq(normal) * norm_sq(mean))
+        })
+    }
+}
+
+/// A vertex, its neighbours and the triangles between them, the vertex at the
+/// origin. All lists but the first hold everything twice, so that indices may
+/// run on.
+#[derive(Default)]
+struct Ring {
+    vertices: Vec<u32>,
+    /// Where the neighbours are.
+    spokes: Vec<Point>,
+    /// Triangle `k` lies between neighbours `k` and `k + 1`.
+    facets: Vec<Facet>,
+    /// Sum of the vector areas.
+    mean: Point,
+    /// The least squared quality of a triangle.
+    worst: f64,
+    /// The axis that the mean is closest to, and which way along it.
+    axis: usize,
+    way: f64,
+    /// Seen along that axis all triangles turn the same way.
+    star: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Facet {
+    /// Vector area and its squared size.
+    normal: Point,
+    size: f64,
+    /// Squared length of the side opposite the vertex.
+    side: f64,
+    /// Whether the normal says which way the surface looks.
+    fat: bool,
+}
+
+impl Ring {
+    /// The ring of `v`, whose half-edges are `fan`.
+    fn gather(&mut self, mesh: &TriMesh, v: u32, fan: &[u32], limit: f64) {
+        let p = mesh.at(v);
+        let n = fan.len();
+        self.vertices.clear();
+        self.vertices.extend(fan.iter().map(|&h| mesh.head(h)));
+        self.spokes.clear();
+        let spokes = self.vertices.iter().map(|&w| sub(mesh.at(w), p));
+        self.spokes.extend(spokes);
+        self.spokes.extend_from_within(..);
+        self.facets.clear();
+        (self.mean, self.worst) = ([0.0; 3], f64::INFINITY);
+        let mut length = norm_sq(self.spokes[0]);
+        for k in 0..n {
+            let (a, b) = (self.spokes[k], self.spokes[k + 1]);
+            let normal = cross(a, b);
+            let (side, next) = (dist_sq(a, b), norm_sq(b));
+            let longest = longest(length, next, side);
+            let size = norm_sq(normal);
+            self.worst = smaller(self.worst, size / (longest * longest));
+            self.mean = add(self.mean, normal);
+            // The height over the longest side tells needles.
+            let fat = size > limit * limit * longest;
+            self.facets.push(Facet {
+                normal,
+                size,
+                side,
+                fat,
+            });
+            length = next;
+        }
+        let axis = (1..3).fold(0, |best, k| {
+            if self.mean[k].abs() > self.mean[best].abs() {
+                k
+            } else {
+                best
+            }
+        });
+        (self.axis, self.way) = (axis, 1f64.copysign(self.mean[axis]));
+        self.star = self.facets.iter().all(|f| f.normal[axis] * self.way > 0.0);
+        self.facets.extend_from_within(..);
+    }
+
+    /// Twice the area of the triangle at the origin seen along the axis.
+    #[inline]
+    fn turn(&self, a: Point, b: Point) -> f64 {
+        let (i, j) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
+        (a[i] * b[j] - a[j] * b[i]) * self.way
+    }
+
+    /// The squared quality of the triangles if the vertex is drawn into
+    /// neighbour `j`, and how far the surface moves, squared; `None` if some
+    /// are no better than `least` or turn over, or if it moves beyond the
+    /// limit.
+    fn try_collapse(&self, j: usize, least: f64, limit: f64) -> Option<(f64, f64)> {
+        let n = self.vertices.len();
+        let to = self.spokes[j];
+        let mut quality = f64::INFINITY;
+        // Of the new triangle that holds the vertex, seen along the axis.
+        let mut below = norm_sq(to);
+        let mut star = self.star;
+        let mut a = sub(self.spokes[j + 1], to);
+        let (mut length, mut left) = (norm_sq(a), self.turn(to, self.spokes[j + 1]));
+        for k in j + 1..j + n - 1 {
+            let old = &self.facets[k];
+            let b = sub(self.spokes[k + 1], to);
+            let normal = cross(a, b);
+            let (next, after) = (norm_sq(b), self.turn(to, self.spokes[k + 1]));
+            let longest = longest(length, next, old.side);
+            let size = norm_sq(normal);
+            quality = smaller(quality, size / (longest * longest));
+            if quality <= least {
+                return None;
+            }
+            let turned = if old.fat {
+                turns(dot(normal, old.normal), TURN, size * old.size)
+            } else {
+                let mean = self.mean;
+                turns(dot(normal, mean), NEEDLE_TURN, size * norm_sq(mean))
+            };
+            if turned {
+                return None;
+            }
+            star &= normal[self.axis] * self.way > 0.0;
+            if left >= 0.0 && after <= 0.0 {
+                let off = dot(to, normal);
+                below = off * off / size;
+            }
+            (a, length, left) = (b, next, after);
+        }
+        let moved = match star {
+            true => self.moves(j, below, limit * limit),
+            false => self.moves_folded(j, limit * limit),
+        };
+        Some((quality, moved?))
+    }
+
+    /// How far the surface moves, squared, if that is within the limit: the
+    /// vertex lies `below` off the new triangles, and the middles of the new
+    /// edges lie off the old ones over or under them.
+    fn moves(&self, j: usize, below: f64, limit: f64) -> Option<f64> {
+        let n = self.vertices.len();
+        let to = self.spokes[j];
+        let mut most = below;
+        for k in j + 2..j + n - 1 {
+            if most > limit {
+                return None;
+            }
+            let middle = scale(add(to, self.spokes[k]), 0.5);
+            let between = match self.turn(to, middle) > 0.0 {
+                true => j..k,
+                false => k..j + n,
+            };
+            let mut turn = self.turn(self.spokes[between.start], middle);
+            for i in between {
+                let next = self.turn(self.spokes[(i + 1) % (2 * n)], middle);
+                if turn >= 0.0 && next <= 0.0 {
+                    let old = &self.facets[i];
+                    let off = dot(middle, old.normal);
+                    most = most.max(off * off / old.size);
+                    break;
+                }
+                turn = next;
+            }
+        }
+        (most <= limit).then_some(most)
+    }
+
+    /// The same where the triangles do not lie side by side.
+    fn moves_folded(&self, j: usize, limit: f64) -> Option<f64> {
+        let n = self.vertices.len();
+        let to = self.spokes[j];
+        // The neighbour itself is a point of the triangles.
+        let mut most = norm_sq(to);
+        for k in j + 1..j + n - 1 {
+            let t = [to, self.spokes[k], self.spokes[k + 1]];
+            most = most.min(point_triangle_sq([0.0; 3], &t));
+        }
+        if most > limit {
+            return None;
+        }
+        for k in j + 2..j + n - 1 {
+            let middle = scale(add(to, self.spokes[k]), 0.5);
+            let mut off = f64::INFINITY;
+            for i in 0..n {
+                let t = [[0.0; 3], self.spokes[i], self.spokes[i + 1]];
+                off = off.min(point_triangle_sq(middle, &t));
+                if off <= most {
+                    break;
+                }
+            }
+            if off > limit {
+                return None;
+            }
+            most = most.max(off);
+        }
+        Some(most)
     }
 }
 
@@ -274,11 +408,24 @@ fn turns(dot: f64, cosine: f64, product: f64) -> bool {
     dot <= 0.0 || dot * dot < cosine * cosine * product
 }
 
+/// The squared height over the longest side.
+fn quality(t: &[Point; 3]) -> f64 {
+    let (normal, longest) = area(t);
+    norm_sq(normal) / (longest * longest)
+}
+
 /// Twice the vector area, and the square of the longest side.
+#[inline]
 pub(crate) fn area(t: &[Point; 3]) -> (Point, f64) {
     let (u, v) = (sub(t[1], t[0]), sub(t[2], t[0]));
-    let longest = norm_sq(u).max(norm_sq(v)).max(dist_sq(t[1], t[2]));
-    (cross(u, v), longest.max(f64::MIN_POSITIVE))
+    let longest = longest(norm_sq(u), norm_sq(v), dist_sq(t[1], t[2]));
+    (cross(u, v), longest)
+}
+
+/// The largest of three squared lengths, and not zero.
+#[inline]
+fn longest(a: f64, b: f64, c: f64) -> f64 {
+    larger(larger(a, b), larger(c, f64::MIN_POSITIVE))
 }
 
 /// The squared distance from a point to a triangle.

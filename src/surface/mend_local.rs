@@ -298,7 +298,10 @@ impl Work<'_> {
             Change::Collapse(h) => {
                 let (from, to) = (self.mesh.tail(h), self.mesh.head(h));
                 self.mesh.fan(from, &mut self.fan);
-                if !self.mesh.can_collapse(h, &self.fan) {
+                self.near.clear();
+                self.near
+                    .extend(self.fan.iter().map(|&h| self.mesh.head(h)));
+                if !self.mesh.can_collapse(h, &self.near) {
                     return None;
                 }
                 touched = self.fan.iter().map(|h| h / 3).collect();

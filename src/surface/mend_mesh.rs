@@ -8,8 +8,9 @@
 //! open, so that a change can be tried and taken back.
 
 use super::raw::{Crust, NONE};
-use crate::geom::Point;
+use crate::geom::{Bounds, Point};
 use crate::mesh::PolygonMesh;
+use rayon::prelude::*;
 
 /// A closed triangle mesh under repair. Positions are those of a
 /// [`crate::mesh::clash::Clash`].
@@ -59,27 +60,90 @@ pub(crate) fn prev(h: u32) -> u32 {
 
 impl TriMesh {
     /// The triangles of a crust, which must be closed and manifold, with
-    /// `points` for its positions.
-    pub fn new(crust: &Crust, points: Vec<Point>, source: Vec<u32>) -> TriMesh {
-        let mesh = &crust.mesh;
-        let tris: Vec<[u32; 3]> = (mesh.corners.chunks_exact(3))
-            .map(|t| [t[0], t[1], t[2]])
-            .collect();
-        let mut out = vec![NONE; points.len()];
-        for (h, &v) in mesh.corners.iter().enumerate() {
-            out[v as usize] = h as u32;
+    /// `points` for its positions. Vertices are numbered along a space-filling
+    /// curve and triangles by their least vertices, so that neighbours on the
+    /// surface are neighbours in memory.
+    pub fn new(crust: &Crust, points: &[Point]) -> TriMesh {
+        let order = along_curve(points);
+        let mut number = vec![NONE; points.len()];
+        for (new, &old) in order.iter().enumerate() {
+            number[old as usize] = new as u32;
         }
-        TriMesh {
-            twin: twins(&mesh.corners, points.len()),
-            points,
-            movable: crust.vertex_samples.iter().map(|&s| s == NONE).collect(),
-            samples: crust.vertex_samples.clone(),
+        let renumbered = |t: &[u32]| [t[0], t[1], t[2]].map(|v| number[v as usize]);
+        let least = |t: &[u32]| {
+            let [a, b, c] = renumbered(t);
+            a.min(b).min(c)
+        };
+        let corners = &crust.mesh.corners;
+        let source = by_bucket(points.len(), corners.chunks_exact(3).map(least));
+        let tris: Vec<[u32; 3]> = (source.iter())
+            .map(|&f| renumbered(&corners[3 * f as usize..]))
+            .collect();
+        let samples: Vec<u32> = (order.iter())
+            .map(|&v| crust.vertex_samples[v as usize])
+            .collect();
+        let mut mesh = TriMesh {
+            twin: twins(&tris, points.len()),
+            points: order.iter().map(|&v| points[v as usize]).collect(),
+            movable: samples.iter().map(|&s| s == NONE).collect(),
+            samples,
             tris,
-            out,
+            out: Vec::new(),
             source,
             journal: Vec::new(),
             recording: false,
+        };
+        mesh.find_out();
+        mesh
+    }
+
+    /// A half-edge at each vertex.
+    fn find_out(&mut self) {
+        self.out.clear();
+        self.out.resize(self.points.len(), NONE);
+        for (t, tri) in self.tris.iter().enumerate() {
+            for (k, &v) in tri.iter().enumerate() {
+                self.out[v as usize] = (3 * t + k) as u32;
+            }
         }
+    }
+
+    /// Lets go of what is gone. Vertices and triangles keep their order;
+    /// `values` at the vertices go with them.
+    pub fn compact(&mut self, values: &mut Vec<f64>) {
+        let mut number = vec![NONE; self.points.len()];
+        let mut count = 0;
+        for v in 0..self.points.len() {
+            if self.out[v] != NONE {
+                number[v] = count as u32;
+                self.points[count] = self.points[v];
+                self.samples[count] = self.samples[v];
+                self.movable[count] = self.movable[v];
+                values[count] = values[v];
+                count += 1;
+            }
+        }
+        self.points.truncate(count);
+        self.samples.truncate(count);
+        self.movable.truncate(count);
+        values.truncate(count);
+        let mut half = vec![NONE; self.twin.len()];
+        let mut count = 0;
+        for t in 0..self.tris.len() {
+            if self.tris[t][0] != NONE {
+                for k in 0..3 {
+                    half[3 * t + k] = (3 * count + k) as u32;
+                }
+                self.tris[count] = self.tris[t].map(|v| number[v as usize]);
+                self.source[count] = self.source[t];
+                count += 1;
+            }
+        }
+        self.tris.truncate(count);
+        self.source.truncate(count);
+        let alive = (0..half.len()).filter(|&h| half[h] != NONE);
+        self.twin = alive.map(|h| half[self.twin[h] as usize]).collect();
+        self.find_out();
     }
 
     #[inline]
@@ -161,30 +225,28 @@ impl TriMesh {
         self.around(self.around(self.around(h))) != h
     }
 
-    /// Whether the tail of `h`, whose half-edges are `fan`, can be drawn into
+    /// Whether the tail of `h`, whose neighbours are `ring`, can be drawn into
     /// its head: they have two neighbours in common and no more (the link
     /// condition), and those keep three edges.
-    pub fn can_collapse(&self, h: u32, fan: &[u32]) -> bool {
+    pub fn can_collapse(&self, h: u32, ring: &[u32]) -> bool {
         let (a, b) = (self.tail(prev(h)), self.tail(prev(self.twin(h))));
         let to = self.head(h);
-        if a == b || !self.has_many(a) || !self.has_many(b) {
-            return false;
-        }
         let mut common = 0;
         let first = self.twin(h);
         let mut g = self.around(first);
         while g != first {
             let end = self.head(g);
-            if end == to {
-                return false;
-            }
-            common += fan.iter().filter(|&&f| self.head(f) == end).count();
-            if common > 2 {
+            common += ring.iter().filter(|&&w| w == end).count();
+            if common > 2 || end == to {
                 return false;
             }
             g = self.around(g);
         }
-        common == 2 && fan.iter().filter(|&&f| self.head(f) == to).count() == 1
+        common == 2
+            && a != b
+            && ring.iter().filter(|&&w| w == to).count() == 1
+            && self.has_many(a)
+            && self.has_many(b)
     }
 
     /// Draws the tail of `h` into its head; see [`Self::can_collapse`].
@@ -330,31 +392,82 @@ impl TriMesh {
     }
 }
 
-/// The half-edge that runs the other way, for each: buckets by lower end.
-fn twins(corners: &[u32], vertices: usize) -> Vec<u32> {
-    let end = |h: usize| corners[next(h as u32) as usize];
-    let low = |h: usize| corners[h].min(end(h)) as usize;
+/// The vertices along a Z-order curve through their box.
+fn along_curve(points: &[Point]) -> Vec<u32> {
+    let Some(bounds) = Bounds::of(points) else {
+        return Vec::new();
+    };
+    let side = |k: usize| bounds.max[k] - bounds.min[k];
+    let most = side(0).max(side(1)).max(side(2)).max(f64::MIN_POSITIVE);
+    // Ten bits an axis, spread to every third.
+    let key = |p: &Point| {
+        let spread = |k: usize| {
+            let x = (((p[k] - bounds.min[k]) / most) * 1023.0) as u64;
+            let x = (x | x << 16) & 0x0300_00ff;
+            let x = (x | x << 8) & 0x0300_f00f;
+            let x = (x | x << 4) & 0x030c_30c3;
+            (x | x << 2) & 0x0924_9249
+        };
+        spread(0) << 2 | spread(1) << 1 | spread(2)
+    };
+    let mut keys: Vec<u64> = (points.par_iter().enumerate())
+        .map(|(v, p)| key(p) << 32 | v as u64)
+        .collect();
+    keys.par_sort_unstable();
+    keys.iter().map(|&k| k as u32).collect()
+}
+
+/// The numbers of the items, each in a bucket below `buckets`, by bucket and
+/// then by number.
+fn by_bucket(buckets: usize, items: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+    let mut first = vec![0u32; buckets + 1];
+    let mut count = 0;
+    for b in items.clone() {
+        first[b as usize + 1] += 1;
+        count += 1;
+    }
+    for b in 1..first.len() {
+        first[b] += first[b - 1];
+    }
+    let mut order = vec![0; count];
+    for (n, b) in items.enumerate() {
+        let at = &mut first[b as usize];
+        order[*at as usize] = n as u32;
+        *at += 1;
+    }
+    order
+}
+
+/// The half-edge that runs the other way, for each. Those that run upward lie
+/// in buckets by their tails; the others look theirs up.
+fn twins(tris: &[[u32; 3]], vertices: usize) -> Vec<u32> {
+    let corners = tris.as_flattened();
+    let ends = |h: usize| (corners[h], corners[next(h as u32) as usize]);
     let mut first = vec![0u32; vertices + 2];
     for h in 0..corners.len() {
-        first[low(h) + 2] += 1;
+        let (tail, head) = ends(h);
+        first[tail as usize + 2] += u32::from(tail < head);
     }
     for v in 2..first.len() {
         first[v] += first[v - 1];
     }
-    let mut slots = vec![0u64; corners.len()];
+    let mut upward = vec![(0, 0); first[vertices + 1] as usize];
     for h in 0..corners.len() {
-        let slot = &mut first[low(h) + 1];
-        slots[*slot as usize] = u64::from(corners[h].max(end(h))) << 32 | h as u64;
-        *slot += 1;
+        let (tail, head) = ends(h);
+        if tail < head {
+            let slot = &mut first[tail as usize + 1];
+            upward[*slot as usize] = (head, h as u32);
+            *slot += 1;
+        }
     }
     let mut twin = vec![NONE; corners.len()];
-    for v in 0..vertices {
-        let bucket = &mut slots[first[v] as usize..first[v + 1] as usize];
-        bucket.sort_unstable();
-        for pair in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
-            if let [a, b] = *pair {
-                twin[a as u32 as usize] = b as u32;
-                twin[b as u32 as usize] = a as u32;
+    for h in 0..corners.len() {
+        let (tail, head) = ends(h);
+        if tail > head {
+            let bucket = first[head as usize] as usize..first[head as usize + 1] as usize;
+            if let Some(&(_, up)) = upward[bucket].iter().find(|(v, _)| *v == tail) {
+                twin[h] = up;
+                twin[up as usize] = h as u32;
             }
         }
     }

@@ -9,7 +9,8 @@
 use super::mend_coarsen::area;
 use super::mend_mesh::TriMesh;
 use super::raw::NONE;
-use crate::geom::vec3::{add, cross, dot, norm_sq, scale, sub};
+use crate::geom::vec3::plain::{dot, norm_sq};
+use crate::geom::vec3::{add, cross, scale, sub};
 use crate::geom::Point;
 use crate::mesh::clash::Clash;
 

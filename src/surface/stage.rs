@@ -156,8 +156,13 @@ impl Job<'_> {
                 times_power(user, unit)
             },
         };
-        let mended = mend_crust(&triangles, &how, context)?;
+        // Polygons are asked for again only where they are written.
+        let cut = (options.faces == Faces::Polygons).then_some((polygons, polygon_of));
+        let mended = mend_crust(triangles, &how, context)?;
         stats.part("crust: mend", &mut clock);
+        for &(part, seconds) in &mended.seconds {
+            stats.add_part(&format!("crust: mend: {part}"), seconds);
+        }
         if first {
             stats.crossings_found = mended.found;
         }
@@ -166,15 +171,13 @@ impl Job<'_> {
         stats.drawn_apart = mended.drawn_apart;
         stats.flattened = mended.collapsed;
         stats.samples_lost = mended.samples_lost;
-        let left = (mended.left.iter())
-            .map(|pair| pair.map(|f| triangles.face_balls[f as usize]))
-            .collect();
+        let left = mended.left;
         let mut crust = mended.crust;
-        if options.faces == Faces::Polygons {
+        if let Some((polygons, polygon_of)) = &cut {
             let of: Vec<u32> = (mended.source.iter())
                 .map(|&t| polygon_of[t as usize])
                 .collect();
-            crust = regroup(crust, &polygons, &of, context)?;
+            crust = regroup(crust, polygons, &of, context)?;
         }
         if crust.mesh.face_count() == 0 {
             return Err(self.nothing());
@@ -200,14 +203,12 @@ fn regroup(
     context: &Context,
 ) -> Result<Crust, Error> {
     let mesh = &triangles.mesh;
-    // Where each polygon's triangles lie: they come in order.
-    let mut runs: Vec<(u32, Vec<u32>)> = Vec::new();
-    for (t, &p) in of.iter().enumerate() {
-        match runs.last_mut() {
-            Some((last, run)) if *last == p => run.push(t as u32),
-            _ => runs.push((p, vec![t as u32])),
-        }
-    }
+    // Where each polygon's triangles lie.
+    let mut order: Vec<u32> = (0..of.len() as u32).collect();
+    order.sort_by_key(|&t| of[t as usize]);
+    let runs: Vec<(u32, Vec<u32>)> = (order.chunk_by(|&s, &t| of[s as usize] == of[t as usize]))
+        .map(|run| (of[run[0] as usize], run.to_vec()))
+        .collect();
     let mut whole: Vec<bool> = Vec::with_capacity(runs.len());
     let mut rings = Vec::with_capacity(runs.len());
     for (p, run) in &runs {
