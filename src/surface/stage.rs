@@ -4,7 +4,9 @@
 use std::time::Instant;
 
 use super::mend::{mend_crust, MendOptions};
-use super::{clean_counted, raw_crust, triangulate_from, CleanOptions, Crust, Placement, NONE};
+use super::{
+    clean_counted, raw_crust, triangulate_faces, CleanOptions, Crust, Placement, Triangles, NONE,
+};
 use crate::context::{Context, Stage};
 use crate::delaunay::{times_power, Samples};
 use crate::error::Error;
@@ -131,7 +133,12 @@ impl Job<'_> {
         stats.polygons = polygons.mesh.face_count();
         stats.part("crust: clean", &mut clock);
         context.advance(Stage::Crust, 2, 3)?;
-        let (triangles, polygon_of) = triangulate_from(&polygons);
+        // Polygons are asked for again only where they are written.
+        let kept = (options.faces == Faces::Polygons).then(|| polygons.clone());
+        let Triangles {
+            crust: triangles,
+            starts,
+        } = triangulate_faces(polygons);
         if triangles.mesh.face_count() == 0 {
             return Err(self.nothing());
         }
@@ -156,8 +163,6 @@ impl Job<'_> {
                 times_power(user, unit)
             },
         };
-        // Polygons are asked for again only where they are written.
-        let cut = (options.faces == Faces::Polygons).then_some((polygons, polygon_of));
         let mended = mend_crust(triangles, &how, context)?;
         stats.part("crust: mend", &mut clock);
         for &(part, seconds) in &mended.seconds {
@@ -173,9 +178,9 @@ impl Job<'_> {
         stats.samples_lost = mended.samples_lost;
         let left = mended.left;
         let mut crust = mended.crust;
-        if let Some((polygons, polygon_of)) = &cut {
+        if let Some(polygons) = &kept {
             let of: Vec<u32> = (mended.source.iter())
-                .map(|&t| polygon_of[t as usize])
+                .map(|t| starts.partition_point(|start| start <= t) as u32 - 1)
                 .collect();
             crust = regroup(crust, polygons, &of, context)?;
         }
