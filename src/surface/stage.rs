@@ -136,6 +136,7 @@ impl Job<'_> {
             return Err(self.nothing());
         }
         stats.part("crust: triangulate", &mut clock);
+        let cut = (options.faces == Faces::Polygons).then_some((polygons, polygon_of));
         let how = MendOptions {
             flatness: match options.faces {
                 Faces::Triangles => options.flatness,
@@ -170,7 +171,7 @@ impl Job<'_> {
             .map(|pair| pair.map(|f| triangles.face_balls[f as usize]))
             .collect();
         let mut crust = mended.crust;
-        if options.faces == Faces::Polygons {
+        if let Some((polygons, polygon_of)) = cut {
             let of: Vec<u32> = (mended.source.iter())
                 .map(|&t| polygon_of[t as usize])
                 .collect();

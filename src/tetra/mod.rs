@@ -13,12 +13,16 @@ mod build;
 mod cavity;
 mod check;
 mod complex;
+mod edges;
 mod frame;
 pub mod order;
+mod stars;
 
 pub use build::{extend, locate, triangulate, Triangulation};
 pub use check::{check, Finding};
 pub use complex::{facet_of, pack, unpack, Complex, FACETS, MOST_CELLS, NONE};
+pub use edges::Edges;
+pub use stars::Stars;
 
 use crate::predicates::{conflict, conflict_weighted, orient, Counts, Sign, Site};
 
