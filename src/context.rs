@@ -109,3 +109,25 @@ impl Context<'_> {
         }
     }
 }
+
+/// A part of a stage, as a share of the whole of it.
+#[derive(Clone, Copy)]
+pub struct Portion<'a> {
+    /// Where progress goes.
+    pub context: &'a Context<'a>,
+    /// The stage.
+    pub stage: Stage,
+    /// Where in the stage the part begins and ends, in `0..=100`.
+    pub percent: [u64; 2],
+}
+
+impl Portion<'_> {
+    /// Reports that `done` of `total` items of the part are done; an error
+    /// when the caller wants to stop.
+    pub fn advance(&self, done: usize, total: usize) -> Result<(), Cancelled> {
+        let [from, to] = self.percent;
+        let within = (to - from) * 100 * done as u64 / total.max(1) as u64;
+        self.context
+            .advance(self.stage, from * 100 + within, 10_000)
+    }
+}

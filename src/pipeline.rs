@@ -9,6 +9,7 @@ use crate::geom::{Ball, Point, Side};
 use crate::label::{
     energy, hold, label, opposites, refine, Evidence, LabelOptions, Neighbours, MOST_UNHELD,
 };
+use crate::memory;
 use crate::options::Options;
 use crate::poles::{poles, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
@@ -84,7 +85,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
 
     // 1. Samples, frame, Delaunay triangulation.
     context.advance(Stage::Samples, 0, points.len() as u64)?;
-    let samples = samples(points, options.box_factor)?;
+    let mut samples = samples(points, options.box_factor)?;
     stats.points = points.len();
     stats.samples = samples.len();
     stats.duplicates = points.len() - samples.len();
@@ -92,9 +93,11 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         resolves(&samples.lattice)?;
     }
     clock.lap(Stage::Samples, &mut stats);
-    let delaunay = delaunay(&samples, context)?;
+    let mut delaunay = delaunay(&samples, context)?;
     stats.delaunay_cells = delaunay.complex.len();
     stats.delaunay_predicates = delaunay.counts;
+    // What no later stage reads makes room. The triangulation has the sites.
+    delaunay.complex.neighbours = Vec::new();
     clock.lap(Stage::Delaunay, &mut stats);
 
     // 2. Poles; balls that say nothing new are merged (fact F6).
@@ -106,8 +109,9 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.skinny_samples = poles.skinny_samples;
     stats.poles_dropped = poles.dropped;
     stats.poles = poles.balls.len();
-    let (mut poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge);
+    let (mut poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge, context)?;
     stats.balls = poles.balls.len();
+    samples.sites = Vec::new();
     clock.lap(Stage::Poles, &mut stats);
 
     // 3. Power diagram.
@@ -120,14 +124,13 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
 
     // 4. Labels, by the geometry on the lattice: no overflow at any scale.
     let on_lattice = poles.balls.on_lattice();
-    let sites: Vec<Point> = samples.sites.iter().map(|s| [s[0], s[1], s[2]]).collect();
-    let pairs = opposites(&poles.of_sample, &sites, &on_lattice);
+    let pairs = opposites(&poles.of_sample, &delaunay.sites, &on_lattice);
     let evidence = Evidence {
         balls: &on_lattice,
         outer: &poles.balls.touches_frame,
         opposites: &pairs,
     };
-    let neighbours = Neighbours::of(&power);
+    let neighbours = Neighbours::of(&power, context)?;
     let how = LabelOptions {
         deep: -options.deep_angle.to_radians().cos(),
     };
@@ -135,8 +138,11 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.greedy_energy = energy(&evidence, &neighbours, &labels.sides, &how);
     stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
     stats.unreached_balls = labels.unreached;
-    stats.label_energy = energy(&evidence, &neighbours, &labels.sides, &how);
-    drop(neighbours);
+    stats.label_energy = match stats.flips {
+        0 => stats.greedy_energy,
+        _ => energy(&evidence, &neighbours, &labels.sides, &how),
+    };
+    drop((neighbours, pairs, on_lattice));
     let most = match (options.sharp, options.interpolate) {
         (_, Some(true)) => 1.0,
         (_, Some(false)) | (true, None) => 0.0,
@@ -144,8 +150,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     };
     let balls = &mut poles.balls;
     stats.held = hold(&delaunay, balls, &mut power, &mut labels, most, context)?;
-    drop(delaunay);
-    let on_lattice = balls.on_lattice();
+    drop((delaunay, poles.of_sample));
     stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();
     clock.lap(Stage::Labels, &mut stats);
 
@@ -166,8 +171,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         stats.volume = crust.mesh.volume();
     }
     let lattice = samples.lattice;
-    let balls = on_lattice
-        .iter()
+    let balls = (poles.balls.on_lattice().iter())
         .zip(&sides)
         .enumerate()
         .map(|(b, (ball, &side))| PolarBall {
@@ -217,6 +221,8 @@ impl Clock {
         let now = Instant::now();
         let seconds = now.duration_since(self.0).as_secs_f64();
         stats.seconds.push((stage.name().to_string(), seconds));
+        let peak = memory::peak().map(|bytes| (stage.name().to_string(), bytes));
+        stats.peak_bytes.extend(peak);
         self.0 = now;
     }
 }

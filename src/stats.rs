@@ -80,6 +80,9 @@ pub struct Stats {
     /// Seconds by part of a stage, `crust: extract` for one, in order. Parts
     /// need not add up to their stage.
     pub part_seconds: Vec<(String, f64)>,
+    /// The largest amount of memory that the process had had by the end of
+    /// each stage, in bytes; empty where the system does not tell.
+    pub peak_bytes: Vec<(String, u64)>,
     /// Every option used.
     pub options: Options,
 }
@@ -122,6 +125,7 @@ impl Stats {
             power_predicates: Counts::default(),
             seconds: Vec::new(),
             part_seconds: Vec::new(),
+            peak_bytes: Vec::new(),
             options: options.clone(),
         }
     }

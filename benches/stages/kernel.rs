@@ -38,7 +38,7 @@ fn merge(bencher: Bencher, cloud: Cloud) {
         .with_inputs(|| poles.clone())
         .input_counter(|poles| ItemsCount::new(poles.balls.len()))
         .bench_local_values(|poles| {
-            simplify::merge_redundant(&run.samples, &run.delaunay, poles, 0.5)
+            simplify::merge_redundant(&run.samples, &run.delaunay, poles, 0.5, &Context::default())
         });
 }
 

@@ -16,7 +16,7 @@ fn neighbours(bencher: Bencher, cloud: Cloud) {
     let run = stages(cloud);
     bencher
         .counter(balls(run))
-        .bench_local(|| Neighbours::of(&run.power));
+        .bench_local(|| Neighbours::of(&run.power, &Context::default()));
 }
 
 /// Beliefs by the queue, and the flips after it.

@@ -23,7 +23,11 @@ pub struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     pub fn new(bytes: &'a [u8]) -> Lines<'a> {
-        let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
+        let end = if memchr::memchr(b'\n', bytes).is_some() {
+            b'\n'
+        } else {
+            b'\r'
+        };
         Lines {
             rest: bytes,
             number: 0,
@@ -58,7 +62,7 @@ impl<'a> Iterator for Lines<'a> {
         if self.rest.is_empty() {
             return None;
         }
-        let end = self.rest.iter().position(|&b| b == self.end);
+        let end = memchr::memchr(self.end, self.rest);
         let (line, rest) = match end {
             Some(i) => (&self.rest[..i], &self.rest[i + 1..]),
             None => (self.rest, &[][..]),

@@ -198,7 +198,12 @@ fn read_text(bytes: &[u8], out: &mut Contents) -> Result<(), ReadError> {
     let mut open = false;
     let mut in_facet = 0usize;
     while let Some((place, word)) = words.next() {
-        match word.to_ascii_lowercase().as_slice() {
+        // No keyword is longer than eight letters: nine tell a longer word.
+        let mut keyword = [0; 9];
+        let length = word.len().min(keyword.len());
+        keyword[..length].copy_from_slice(&word[..length]);
+        keyword.make_ascii_lowercase();
+        match &keyword[..length] {
             b"solid" => {
                 open = true;
                 words.skip_line();

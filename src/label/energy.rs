@@ -1,5 +1,7 @@
 //! How torn a labelling is: the evidence it goes against.
 
+use rayon::prelude::*;
+
 use super::{Evidence, LabelOptions, Neighbours};
 use crate::geom::Side;
 
@@ -39,17 +41,17 @@ pub fn energy(
             energy.like_opposites += 1;
         }
     }
-    for (p, ball) in evidence.balls.iter().enumerate() {
-        for &q in neighbours.at(p as u32) {
-            if q as usize > p && sides[q as usize] != sides[p] {
-                if let Some(depth) = ball.depth(&evidence.balls[q as usize]) {
-                    if depth > options.deep {
-                        energy.neighbours += depth;
-                        energy.unlike_neighbours += 1;
-                    }
-                }
-            }
-        }
-    }
+    // The sum is taken in the order of the balls: no rounding by threads.
+    let unlike: Vec<f64> = (0..evidence.balls.len() as u32)
+        .into_par_iter()
+        .flat_map_iter(|p| {
+            let side = sides[p as usize];
+            let other = move |&&q: &&u32| q > p && sides[q as usize] != side;
+            let unlike = neighbours.at(p).iter().filter(other);
+            unlike.filter_map(move |&q| evidence.depth(p, q, options))
+        })
+        .collect();
+    energy.neighbours = unlike.iter().fold(0.0, |sum, depth| sum + depth);
+    energy.unlike_neighbours = unlike.len() as u64;
     energy
 }

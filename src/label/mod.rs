@@ -13,6 +13,7 @@ mod check;
 mod energy;
 mod hold;
 mod propagate;
+mod queue;
 mod refine;
 
 pub use check::{check, Finding};
@@ -21,9 +22,14 @@ pub use hold::{hold, Held, MOST_UNHELD};
 pub use propagate::label;
 pub use refine::refine;
 
+use rayon::prelude::*;
+
+use crate::context::{Cancelled, Context, Portion, Stage};
 use crate::geom::{Ball, Side};
 use crate::poles::NO_POLE;
 use crate::power::PowerDiagram;
+use crate::predicates::Site;
+use crate::tetra::Edges;
 
 /// How to label.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +57,15 @@ pub struct Evidence<'a> {
     pub opposites: &'a [Opposite],
 }
 
+impl Evidence<'_> {
+    /// How deeply two balls intersect, if they do.
+    #[inline]
+    fn depth(&self, p: u32, q: u32, options: &LabelOptions) -> Option<f64> {
+        let depth = self.balls[p as usize].depth(&self.balls[q as usize])?;
+        (depth > options.deep).then_some(depth)
+    }
+}
+
 /// The two poles of a sample and how surely they lie on different sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opposite {
@@ -61,71 +76,50 @@ pub struct Opposite {
 }
 
 /// The opposite pairs of all samples with two poles.
-pub fn opposites(
-    of_sample: &[[u32; 2]],
-    points: &[crate::geom::Point],
-    balls: &[Ball],
-) -> Vec<Opposite> {
+pub fn opposites(of_sample: &[[u32; 2]], sites: &[Site], balls: &[Ball]) -> Vec<Opposite> {
     use crate::geom::vec3::{dot, norm, sub};
-    let mut out = Vec::with_capacity(of_sample.len());
-    for (s, poles) in of_sample.iter().enumerate() {
+    let pair = |(poles, s): (&[u32; 2], &Site)| {
         if poles.contains(&NO_POLE) || poles[0] == poles[1] {
-            continue;
+            return None;
         }
-        let [p, q] = poles.map(|b| sub(balls[b as usize].centre, points[s]));
+        let at = [s[0], s[1], s[2]];
+        let [p, q] = poles.map(|b| sub(balls[b as usize].centre, at));
         let lengths = norm(p) * norm(q);
         let weight = if lengths > 0.0 {
             (-dot(p, q) / lengths).min(1.0)
         } else {
             0.0
         };
-        if weight > 0.0 {
-            out.push(Opposite {
-                poles: *poles,
-                weight,
-            });
-        }
-    }
-    out
+        (weight > 0.0).then_some(Opposite {
+            poles: *poles,
+            weight,
+        })
+    };
+    let samples = of_sample.par_iter().zip(sites);
+    samples.filter_map(pair).collect()
 }
 
-/// The neighbours of each ball in the power diagram, sentinels left out, as a
-/// compressed table.
-pub struct Neighbours {
-    starts: Vec<u32>,
-    items: Vec<u32>,
-}
+/// The neighbours of each ball in the power diagram, sentinels left out.
+pub struct Neighbours(Edges);
 
 impl Neighbours {
     /// Collects the edges of the regular triangulation.
-    pub fn of(power: &PowerDiagram) -> Neighbours {
-        let vertices = power.sites.len();
-        let (cell_starts, cells) = power.complex.cells_by_vertex(vertices);
-        let mut seen = vec![u32::MAX; vertices];
-        let mut starts = Vec::with_capacity(power.balls + 1);
-        let mut items = Vec::new();
-        starts.push(0);
-        for b in 0..power.balls {
-            seen[b] = b as u32;
-            let from = items.len();
-            for &c in &cells[cell_starts[b] as usize..cell_starts[b + 1] as usize] {
-                for &v in &power.complex.cells[c as usize] {
-                    if seen[v as usize] != b as u32 && !power.is_sentinel(v) {
-                        seen[v as usize] = b as u32;
-                        items.push(v);
-                    }
-                }
-            }
-            items[from..].sort_unstable();
-            starts.push(items.len() as u32);
-        }
-        Neighbours { starts, items }
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn of(power: &PowerDiagram, context: &Context) -> Result<Neighbours, Cancelled> {
+        let progress = Portion {
+            context,
+            stage: Stage::Labels,
+            percent: [0, 40],
+        };
+        Edges::of(&power.complex, power.balls, &progress).map(Neighbours)
     }
 
     /// The neighbours of a ball, ascending.
+    #[inline]
     pub fn at(&self, ball: u32) -> &[u32] {
-        let b = ball as usize;
-        &self.items[self.starts[b] as usize..self.starts[b + 1] as usize]
+        self.0.at(ball)
     }
 }
 
@@ -161,8 +155,12 @@ impl Partners {
     }
 
     pub(crate) fn at(&self, ball: u32) -> &[(u32, f64)] {
+        &self.items[self.range(ball)]
+    }
+
+    pub(crate) fn range(&self, ball: u32) -> std::ops::Range<usize> {
         let b = ball as usize;
-        &self.items[self.starts[b] as usize..self.starts[b + 1] as usize]
+        self.starts[b] as usize..self.starts[b + 1] as usize
     }
 }
 

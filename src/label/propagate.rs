@@ -9,13 +9,9 @@
 //!     for each deeply intersecting neighbour q:   same(q)     = max(same(q), v * -cos(alpha))
 //! ```
 
-use std::cmp::Reverse;
-use std::hash::{BuildHasherDefault, Hasher};
-
-use priority_queue::PriorityQueue;
-
+use super::queue::Queue;
 use super::{Evidence, LabelOptions, Labels, Neighbours, Partners};
-use crate::context::{Cancelled, Context, Stage};
+use crate::context::{Cancelled, Context, Portion, Stage};
 use crate::geom::Side;
 
 /// Labels every ball.
@@ -36,7 +32,7 @@ use crate::geom::Side;
 ///     outer: &[true, false, false],
 ///     opposites: &opposites,
 /// };
-/// let neighbours = Neighbours::of(&diagram);
+/// let neighbours = Neighbours::of(&diagram, &Context::default())?;
 /// let labels = label(&evidence, &neighbours, &LabelOptions::default(), &Context::default())?;
 /// assert_eq!(labels.sides, [Side::Outer, Side::Inner, Side::Inner]);
 /// # Ok::<(), powercrust::Error>(())
@@ -48,68 +44,121 @@ pub fn label(
     context: &Context,
 ) -> Result<Labels, Cancelled> {
     let count = evidence.balls.len();
-    let partners = Partners::of(count, evidence.opposites);
-    let mut belief = vec![[0.0f64; 2]; count];
-    for (b, &outer) in evidence.outer.iter().enumerate() {
-        if outer {
-            belief[b][Side::Outer as usize] = 1.0;
-        }
+    let mut work = Work {
+        evidence,
+        neighbours,
+        options,
+        partners: Partners::of(count, evidence.opposites),
+        belief: vec![[0.0; 2]; count],
+        queue: Queue::new(count),
+        sides: vec![None; count],
+    };
+    for b in (0..count as u32).filter(|&b| evidence.outer[b as usize]) {
+        work.raise(b, Side::Outer, 1.0);
     }
-    let mut queue: Queue = (0..count as u32)
-        .map(|b| (b, Priority::of(belief[b as usize], b)))
-        .collect();
-    let mut sides: Vec<Option<Side>> = vec![None; count];
-    let mut unreached = 0;
-    let mut done = 0u64;
-    while let Some((p, _)) = queue.pop() {
-        if done.is_multiple_of(4096) {
-            context.advance(Stage::Labels, done, count as u64)?;
+    let progress = Portion {
+        context,
+        stage: Stage::Labels,
+        percent: [40, 90],
+    };
+    let mut unreached = None;
+    let mut done = 0;
+    while let Some((p, priority)) = work.queue.pop() {
+        if done % REPORT == 0 {
+            progress.advance(done, count)?;
         }
         done += 1;
-        let [inner, outer] = belief[p as usize];
-        let (side, value) = if inner == 0.0 && outer == 0.0 {
-            unreached += 1;
-            (by_neighbours(p, evidence, neighbours, &sides), 0.0)
-        } else if inner > outer {
-            (Side::Inner, inner)
-        } else {
-            (Side::Outer, outer)
-        };
-        sides[p as usize] = Some(side);
-        if value == 0.0 {
-            continue;
+        // Balls that no evidence has reached have priority 0.
+        if priority < 0.0 && unreached.is_none() {
+            unreached = Some(work.label_unreached());
         }
-        let mut raise = |q: u32, side: Side, to: f64| {
-            let held = &mut belief[q as usize][side as usize];
-            if to > *held {
-                *held = to;
-                queue.change_priority(&q, Priority::of(belief[q as usize], q));
-            }
-        };
-        for &(q, weight) in partners.at(p) {
-            if sides[q as usize].is_none() {
-                raise(q, side.opposite(), value * weight);
-            }
-        }
-        let ball = &evidence.balls[p as usize];
-        for &q in neighbours.at(p) {
-            if sides[q as usize].is_none() {
-                if let Some(depth) = ball.depth(&evidence.balls[q as usize]) {
-                    if depth > options.deep {
-                        raise(q, side, value * depth);
-                    }
-                }
-            }
-        }
+        work.label(p);
     }
-    context.advance(Stage::Labels, count as u64, count as u64)?;
+    let unreached = unreached.unwrap_or_else(|| work.label_unreached());
+    progress.advance(count, count)?;
     Ok(Labels {
-        sides: sides
-            .into_iter()
+        sides: (work.sides.into_iter())
             .map(|s| s.unwrap_or(Side::Outer))
             .collect(),
         unreached,
     })
+}
+
+/// Balls labelled between two reports of progress.
+const REPORT: usize = 4096;
+
+/// The state of the propagation.
+struct Work<'a> {
+    evidence: &'a Evidence<'a>,
+    neighbours: &'a Neighbours,
+    options: &'a LabelOptions,
+    partners: Partners,
+    /// in(p) and out(p).
+    belief: Vec<[f64; 2]>,
+    /// Balls that evidence has reached and that have no label yet.
+    queue: Queue,
+    sides: Vec<Option<Side>>,
+}
+
+impl Work<'_> {
+    /// Labels a ball and spreads what it believes.
+    fn label(&mut self, p: u32) {
+        let [inner, outer] = self.belief[p as usize];
+        let (side, value) = if inner > outer {
+            (Side::Inner, inner)
+        } else {
+            (Side::Outer, outer)
+        };
+        self.sides[p as usize] = Some(side);
+        for k in self.partners.range(p) {
+            let (q, weight) = self.partners.items[k];
+            self.raise(q, side.opposite(), value * weight);
+        }
+        let (evidence, neighbours) = (self.evidence, self.neighbours);
+        for &q in neighbours.at(p) {
+            if self.sides[q as usize].is_none() {
+                if let Some(depth) = evidence.depth(p, q, self.options) {
+                    self.raise(q, side, value * depth);
+                }
+            }
+        }
+    }
+
+    /// Raises what is believed of a ball that has no label.
+    #[inline]
+    fn raise(&mut self, q: u32, side: Side, to: f64) {
+        if self.sides[q as usize].is_some() {
+            return;
+        }
+        let belief = &mut self.belief[q as usize];
+        if to > belief[side as usize] {
+            belief[side as usize] = to;
+            self.queue.set(q, priority(*belief));
+        }
+    }
+
+    /// Labels the balls that no evidence has reached, by what their
+    /// neighbours say; returns how many there are.
+    fn label_unreached(&mut self) -> u32 {
+        let mut count = 0;
+        for p in 0..self.sides.len() {
+            if self.sides[p].is_none() && self.belief[p] == [0.0; 2] {
+                count += 1;
+                let side = by_neighbours(p as u32, self.evidence, self.neighbours, &self.sides);
+                self.sides[p] = Some(side);
+            }
+        }
+        count
+    }
+}
+
+/// pri(p).
+fn priority([inner, outer]: [f64; 2]) -> f64 {
+    if inner > 0.0 && outer > 0.0 {
+        (inner - outer).abs() - 1.0
+    } else {
+        inner.max(outer)
+    }
 }
 
 /// What the labelled neighbours of a ball say, however shallowly they
@@ -133,52 +182,3 @@ fn by_neighbours(
         Side::Outer
     }
 }
-
-/// A priority with ties broken towards the smaller ball id.
-#[derive(Clone, Copy, PartialEq)]
-struct Priority(f64, Reverse<u32>);
-
-impl Priority {
-    fn of([inner, outer]: [f64; 2], ball: u32) -> Priority {
-        let value = if inner > 0.0 && outer > 0.0 {
-            (inner - outer).abs() - 1.0
-        } else {
-            inner.max(outer)
-        };
-        Priority(value, Reverse(ball))
-    }
-}
-
-impl Eq for Priority {}
-
-impl PartialOrd for Priority {
-    fn partial_cmp(&self, other: &Priority) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Priority {
-    fn cmp(&self, other: &Priority) -> std::cmp::Ordering {
-        self.0.total_cmp(&other.0).then(self.1.cmp(&other.1))
-    }
-}
-
-/// Ball ids are dense: spreading their bits is hash enough.
-#[derive(Default)]
-struct Spread(u64);
-
-impl Hasher for Spread {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        for &b in bytes {
-            self.0 = (self.0 << 8 | b as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        }
-    }
-    fn write_u32(&mut self, v: u32) {
-        self.0 = (v as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    }
-}
-
-type Queue = PriorityQueue<u32, Priority, BuildHasherDefault<Spread>>;

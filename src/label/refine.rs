@@ -8,6 +8,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use rayon::prelude::*;
+
 use super::{Evidence, LabelOptions, Labels, Neighbours, Partners};
 use crate::geom::Side;
 
@@ -33,16 +35,13 @@ pub fn refine(
                 -weight
             };
         }
-        let ball = &evidence.balls[b as usize];
         for &q in neighbours.at(b) {
-            if let Some(depth) = ball.depth(&evidence.balls[q as usize]) {
-                if depth > options.deep {
-                    gain += if sides[q as usize] == side {
-                        -depth
-                    } else {
-                        depth
-                    };
-                }
+            if let Some(depth) = evidence.depth(b, q, options) {
+                gain += if sides[q as usize] == side {
+                    -depth
+                } else {
+                    depth
+                };
             }
         }
         gain
@@ -51,6 +50,7 @@ pub fn refine(
     const LEAST: f64 = 1e-9;
     let entry = |b: u32, gain: f64| (Gain(gain), Reverse(b));
     let mut queue: BinaryHeap<(Gain, Reverse<u32>)> = (0..sides.len() as u32)
+        .into_par_iter()
         .map(|b| (b, gain(b, sides)))
         .filter(|(_, g)| *g > LEAST)
         .map(|(b, g)| entry(b, g))

@@ -1,8 +1,11 @@
 //! The polar balls as sites of the power diagram.
 
+use std::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use super::NO_POLE;
+use crate::context::{Cancelled, Portion};
 use crate::delaunay::Delaunay;
 use crate::geom::{vec3::dist_sq, Ball, Point};
 use crate::predicates::Site;
@@ -94,9 +97,6 @@ impl Balls {
     }
 }
 
-/// The place of a cell's centre along the curve, the centre, the cell.
-type Keyed = (u64, Point, u32);
-
 /// Makes balls of the chosen cells: equal centres are one ball, which touches
 /// the samples of all cells with that centre, chosen or not.
 pub(super) fn gather(
@@ -104,42 +104,29 @@ pub(super) fn gather(
     centres: &[Point],
     chosen: &[[u32; 2]],
     lattice: BallLattice,
-) -> (Balls, Vec<[u32; 2]>) {
-    let mut used = vec![false; centres.len()];
-    for &c in chosen.iter().flatten() {
-        if c != NO_POLE {
-            used[c as usize] = true;
+    progress: &Portion,
+) -> Result<(Balls, Vec<[u32; 2]>), Cancelled> {
+    let mut is_pole = vec![false; centres.len()];
+    for &c in chosen.iter().flatten().filter(|&&c| c != NO_POLE) {
+        is_pole[c as usize] = true;
+    }
+    let cells = along_the_curve(centres, &is_pole);
+    progress.advance(1, 3)?;
+    // Equal centres are side by side; those of no pole came by chance.
+    let mut groups: Vec<[u32; 2]> = Vec::new();
+    let mut from = 0;
+    let same = |a: &u32, b: &u32| centres[*a as usize] == centres[*b as usize];
+    for group in cells.chunk_by(same) {
+        let to = from + group.len();
+        if group.iter().any(|&c| is_pole[c as usize]) {
+            groups.push([from as u32, to as u32]);
         }
+        from = to;
     }
-    // Order along the curve by centre; equal centres end up side by side.
-    let half = crate::predicates::LIMIT / 2.0;
-    let key = |c: u32| -> Keyed {
-        let p = centres[c as usize];
-        (order::key(&[p[0], p[1], p[2], 0.0], half / 2.0), p, c)
-    };
-    let place =
-        |a: &Keyed, b: &Keyed| (0..3).fold(a.0.cmp(&b.0), |o, k| o.then(a.1[k].total_cmp(&b.1[k])));
-    let cells = 0..centres.len() as u32;
-    let (chosen_cells, others): (Vec<u32>, Vec<u32>) = cells.partition(|&c| used[c as usize]);
-    let mut keyed: Vec<Keyed> = chosen_cells.into_par_iter().map(key).collect();
-    keyed.par_sort_unstable_by(|a, b| place(a, b).then(a.2.cmp(&b.2)));
-    let same_centre = |c: &Keyed| keyed.binary_search_by(|k| place(k, c)).is_ok();
-    let more: Vec<Keyed> = others
-        .into_par_iter()
-        .map(key)
-        .filter(same_centre)
-        .collect();
-    if !more.is_empty() {
-        keyed.extend(more);
-        keyed.par_sort_unstable_by(|a, b| place(a, b).then(a.2.cmp(&b.2)));
-    }
-    let mut firsts: Vec<u32> = Vec::new();
-    for k in 0..keyed.len() {
-        if k == 0 || keyed[k].1 != keyed[k - 1].1 {
-            firsts.push(k as u32);
-        }
-    }
-    let count = firsts.len();
+    drop(is_pole);
+    progress.advance(2, 3)?;
+
+    let count = groups.len();
     let mut balls = Balls {
         sites: Vec::with_capacity(count),
         lattice,
@@ -150,39 +137,85 @@ pub(super) fn gather(
     balls.touch_starts.push(0);
     let mut ball_of_cell = vec![NO_POLE; centres.len()];
     let mut corners: Vec<u32> = Vec::new();
-    for (k, &from) in firsts.iter().enumerate() {
-        let from = from as usize;
-        let to = firsts.get(k + 1).map_or(keyed.len(), |&next| next as usize);
+    for group in &groups {
         let id = balls.sites.len() as u32;
         corners.clear();
-        for (_, _, c) in &keyed[from..to] {
-            ball_of_cell[*c as usize] = id;
-            corners.extend_from_slice(&delaunay.complex.cells[*c as usize]);
+        for &c in &cells[group[0] as usize..group[1] as usize] {
+            ball_of_cell[c as usize] = id;
+            corners.extend_from_slice(&delaunay.complex.cells[c as usize]);
         }
         corners.sort_unstable();
         corners.dedup();
-        let centre = keyed[from].1;
-        balls.sites.push(site(delaunay, centre, &corners, lattice));
-        let real = corners.iter().filter(|&&v| !delaunay.is_frame(v));
-        balls.touched.extend(real);
+        let centre = centres[cells[group[0] as usize] as usize];
+        let site = site(delaunay, centre, &corners, lattice);
+        balls.sites.push(site);
+        let real = corners.partition_point(|&v| !delaunay.is_frame(v));
+        balls.touched.extend_from_slice(&corners[..real]);
         balls.touch_starts.push(balls.touched.len() as u32);
-        balls
-            .touches_frame
-            .push(corners.iter().any(|&v| delaunay.is_frame(v)));
+        balls.touches_frame.push(real < corners.len());
     }
-    let of_sample = chosen
-        .iter()
-        .map(|pair| {
-            pair.map(|c| {
-                if c == NO_POLE {
-                    NO_POLE
-                } else {
-                    ball_of_cell[c as usize]
-                }
-            })
+    let ball = |c: u32| match c {
+        NO_POLE => NO_POLE,
+        c => ball_of_cell[c as usize],
+    };
+    let of_sample = chosen.par_iter().map(|pair| pair.map(ball)).collect();
+    Ok((balls, of_sample))
+}
+
+/// The chosen cells and those that may share a centre with one, sorted along
+/// the curve by their centres.
+fn along_the_curve(centres: &[Point], chosen: &[bool]) -> Vec<u32> {
+    let mut filter = Filter::with_room_for(chosen.iter().filter(|&&c| c).count());
+    for (centre, _) in centres.iter().zip(chosen).filter(|(_, &chosen)| chosen) {
+        filter.add(centre);
+    }
+    let half = crate::predicates::LIMIT / 2.0;
+    let mut keyed: Vec<(u64, u32)> = (0..centres.len())
+        .into_par_iter()
+        .filter(|&c| chosen[c] || filter.may_hold(&centres[c]))
+        .map(|c| {
+            let p = centres[c];
+            (order::key(&[p[0], p[1], p[2], 0.0], half / 2.0), c as u32)
         })
         .collect();
-    (balls, of_sample)
+    keyed.par_sort_unstable_by(|a, b| {
+        let (p, q) = (&centres[a.1 as usize], &centres[b.1 as usize]);
+        let by_place = || (0..3).fold(Ordering::Equal, |o, k| o.then(p[k].total_cmp(&q[k])));
+        a.0.cmp(&b.0).then_with(by_place).then(a.1.cmp(&b.1))
+    });
+    keyed.into_iter().map(|(_, c)| c).collect()
+}
+
+/// A set of points that is sometimes wrong about one it does not hold: a bit
+/// for each point in a table 16 times as large.
+struct Filter {
+    bits: Vec<u64>,
+}
+
+impl Filter {
+    fn with_room_for(count: usize) -> Filter {
+        Filter {
+            bits: vec![0; (count / 4 + 1).next_power_of_two()],
+        }
+    }
+
+    fn place(&self, point: &Point) -> (usize, u32) {
+        let mix =
+            |h: u64, v: &f64| (h.rotate_left(29) ^ v.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let h = point.iter().fold(0, mix);
+        let h = h ^ h >> 32;
+        ((h >> 6) as usize & (self.bits.len() - 1), (h & 63) as u32)
+    }
+
+    fn add(&mut self, point: &Point) {
+        let (word, bit) = self.place(point);
+        self.bits[word] |= 1 << bit;
+    }
+
+    fn may_hold(&self, point: &Point) -> bool {
+        let (word, bit) = self.place(point);
+        self.bits[word] >> bit & 1 == 1
+    }
 }
 
 /// The ball about a centre (in lattice steps of the samples) that reaches the

@@ -24,8 +24,9 @@ pub use balls::{BallLattice, Balls};
 pub use candidates::Candidates;
 pub use check::{check, Finding};
 
-use crate::context::{Cancelled, Context, Stage};
+use crate::context::{Cancelled, Context, Portion, Stage};
 use crate::delaunay::{Delaunay, Samples};
+use crate::tetra::Stars;
 
 /// 'No such pole' among ball ids.
 pub const NO_POLE: u32 = u32::MAX;
@@ -85,14 +86,19 @@ pub fn poles(
     options: &PoleOptions,
     context: &Context,
 ) -> Result<Poles, Cancelled> {
-    let total = samples.len() as u64;
-    context.advance(Stage::Poles, 0, total)?;
+    let part = |percent| Portion {
+        context,
+        stage: Stage::Poles,
+        percent,
+    };
     let lattice = BallLattice::DEFAULT;
-    let centres = select::centres(delaunay, lattice);
-    let chosen = select::select(delaunay, &centres, options);
-    context.advance(Stage::Poles, total / 2, total)?;
-    let (balls, of_sample) = balls::gather(delaunay, &centres, &chosen.cells, lattice);
-    context.advance(Stage::Poles, total, total)?;
+    let stars = Stars::of(&delaunay.complex, samples.len(), &part([0, 10]))?;
+    let centres = select::centres(delaunay, lattice, &part([10, 25]))?;
+    let chosen = select::select(delaunay, &stars, &centres, options, &part([25, 35]))?;
+    drop(stars);
+    let chosen_cells = &chosen.cells;
+    let part = part([35, 50]);
+    let (balls, of_sample) = balls::gather(delaunay, &centres, chosen_cells, lattice, &part)?;
     Ok(Poles {
         balls,
         of_sample,

@@ -19,14 +19,19 @@
 
 use rayon::prelude::*;
 
+use crate::context::{Cancelled, Context, Portion, Stage};
 use crate::delaunay::{Delaunay, Samples};
 use crate::geom::vec3::{dist_sq, dot, norm, sub};
 use crate::geom::Point;
 use crate::poles::{Balls, Poles, NO_POLE};
+use crate::tetra::Edges;
 
 /// Merges redundant balls; `share` is the part of the sampling error by which
 /// a ball may miss a sample it stands for, 0 for none. The spacing of the
 /// samples, which this needs, comes with the balls, in steps of the lattice.
+///
+/// # Errors
+/// [`Cancelled`].
 ///
 /// ```
 /// use powercrust::{delaunay, poles, simplify::merge_redundant, Context};
@@ -41,7 +46,7 @@ use crate::poles::{Balls, Poles, NO_POLE};
 /// let delaunay = delaunay::delaunay(&samples, &cx)?;
 /// let all = poles::poles(&samples, &delaunay, &poles::PoleOptions::default(), &cx)?;
 /// let before = all.balls.len();
-/// let (few, _) = merge_redundant(&samples, &delaunay, all, 0.5);
+/// let (few, _) = merge_redundant(&samples, &delaunay, all, 0.5, &cx)?;
 /// assert!(few.balls.len() * 5 < before * 4, "{} of {before}", few.balls.len());
 /// # Ok::<(), powercrust::Error>(())
 /// ```
@@ -50,149 +55,170 @@ pub fn merge_redundant(
     delaunay: &Delaunay,
     poles: Poles,
     share: f64,
-) -> (Poles, Vec<f64>) {
-    let graph = SampleGraph::of(delaunay);
+    context: &Context,
+) -> Result<(Poles, Vec<f64>), Cancelled> {
+    let part = |percent| Portion {
+        context,
+        stage: Stage::Poles,
+        percent,
+    };
+    let graph = Edges::of(&delaunay.complex, samples.len(), &part([50, 65]))?;
+    let spacing = spacing(samples, &graph);
     if share <= 0.0 {
-        return (poles, graph.spacing);
+        return Ok((poles, spacing));
     }
-    let survivors = greedy(samples, &poles, &graph, share);
-    (renumber(poles, &survivors), graph.spacing)
+    let cover = Cover {
+        samples,
+        poles: &poles,
+        graph: &graph,
+        spacing: &spacing,
+        share,
+    };
+    let survivors = cover.greedy(&part([65, 100]))?;
+    drop(graph);
+    Ok((renumber(poles, &survivors), spacing))
 }
 
-/// The samples as a graph, with the local spacing.
-struct SampleGraph {
-    starts: Vec<u32>,
-    items: Vec<u32>,
-    /// Distance to the fourth nearest neighbour in the graph: on a surface
-    /// about the spacing, whatever lies across the object.
-    spacing: Vec<f64>,
-}
-
-impl SampleGraph {
-    fn of(delaunay: &Delaunay) -> SampleGraph {
-        let (starts, cells) = delaunay.complex.cells_by_vertex(delaunay.sites.len());
-        let rows: Vec<(Vec<u32>, f64)> = (0..delaunay.samples)
-            .into_par_iter()
-            .map(|s| {
-                let mut near = Vec::with_capacity(64);
-                for &c in &cells[starts[s] as usize..starts[s + 1] as usize] {
-                    near.extend_from_slice(&delaunay.complex.cells[c as usize]);
-                }
-                near.sort_unstable();
-                near.dedup();
-                near.retain(|&v| v as usize != s && !delaunay.is_frame(v));
-                let at = position(&delaunay.sites[s]);
-                let mut nearest = [f64::INFINITY; 4];
-                for &v in &near {
-                    let mut d = dist_sq(position(&delaunay.sites[v as usize]), at);
-                    for slot in &mut nearest {
-                        if d < *slot {
-                            std::mem::swap(&mut d, slot);
-                        }
+/// The local spacing: the distance to the fourth nearest neighbour in the
+/// graph. On a surface that is about the spacing, whatever lies across the
+/// object.
+fn spacing(samples: &Samples, graph: &Edges) -> Vec<f64> {
+    let fourth = |s: u32| {
+        let at = position(&samples.sites[s as usize]);
+        let mut nearest = [f64::INFINITY; 4];
+        for &v in graph.at(s) {
+            let mut d = dist_sq(position(&samples.sites[v as usize]), at);
+            if d < nearest[3] {
+                for slot in &mut nearest {
+                    if d < *slot {
+                        std::mem::swap(&mut d, slot);
                     }
                 }
-                let reach = nearest.iter().rev().find(|d| d.is_finite());
-                near.shrink_to_fit();
-                (near, reach.copied().unwrap_or(0.0).sqrt())
-            })
-            .collect();
-        let mut graph = SampleGraph {
-            starts: vec![0],
-            items: Vec::new(),
-            spacing: Vec::with_capacity(rows.len()),
-        };
-        for (near, spacing) in rows {
-            graph.items.extend_from_slice(&near);
-            graph.starts.push(graph.items.len() as u32);
-            graph.spacing.push(spacing);
+            }
         }
-        graph
-    }
-
-    fn near(&self, s: u32) -> &[u32] {
-        let s = s as usize;
-        &self.items[self.starts[s] as usize..self.starts[s + 1] as usize]
-    }
+        let reach = nearest.iter().rev().find(|d| d.is_finite());
+        reach.copied().unwrap_or(0.0).sqrt()
+    };
+    (0..samples.len() as u32)
+        .into_par_iter()
+        .map(fourth)
+        .collect()
 }
 
 fn position(site: &[f64; 4]) -> Point {
     [site[0], site[1], site[2]]
 }
 
-/// For each ball the ball that stands for it: itself if it stays.
-fn greedy(samples: &Samples, poles: &Poles, graph: &SampleGraph, share: f64) -> Vec<u32> {
-    let balls = &poles.balls;
-    let step = balls.lattice.step();
-    let count = balls.len();
-    let centre = |b: u32| position(&balls.sites[b as usize]).map(|v| v * step);
-    let site = |s: u32| position(&samples.sites[s as usize]);
-    let mut order: Vec<u32> = (0..count as u32).collect();
-    order.par_sort_unstable_by(|&a, &b| {
+/// Balls looked at between two reports of progress.
+const REPORT: usize = 1 << 12;
+
+/// Which balls cover which samples.
+struct Cover<'a> {
+    samples: &'a Samples,
+    poles: &'a Poles,
+    graph: &'a Edges,
+    spacing: &'a [f64],
+    share: f64,
+}
+
+impl Cover<'_> {
+    /// For each ball the ball that stands for it: itself if it stays.
+    fn greedy(&self, progress: &Portion) -> Result<Vec<u32>, Cancelled> {
+        let balls = &self.poles.balls;
+        let count = balls.len();
         let weight = |b: u32| balls.sites[b as usize][3];
-        weight(b).total_cmp(&weight(a)).then(a.cmp(&b))
-    });
-    let mut stands_for: Vec<u32> = (0..count as u32).collect();
-    let mut settled = vec![false; count];
-    let mut covered = vec![u32::MAX; samples.len()];
-    let mut front: Vec<u32> = Vec::new();
-    for &c in &order {
-        if settled[c as usize] {
-            continue;
-        }
-        settled[c as usize] = true;
-        if balls.touches_frame[c as usize] {
-            continue;
-        }
-        let middle = centre(c);
-        let radius = balls.sites[c as usize][3].sqrt() * step;
-        let covers = |s: u32| {
-            let h = graph.spacing[s as usize];
-            if 2.0 * h > radius {
-                return false;
+        let mut order: Vec<u32> = (0..count as u32).collect();
+        order.par_sort_unstable_by(|&a, &b| weight(b).total_cmp(&weight(a)).then(a.cmp(&b)));
+        let mut stands_for: Vec<u32> = (0..count as u32).collect();
+        let mut settled = balls.touches_frame.clone();
+        // The ball that met a sample last, and whether it covers it; the ball
+        // that met another one last.
+        let mut met = vec![(NO_POLE, false); self.samples.len()];
+        let mut asked = vec![NO_POLE; count];
+        let mut front: Vec<u32> = Vec::new();
+        for (done, &c) in order.iter().enumerate() {
+            if done.is_multiple_of(REPORT) {
+                progress.advance(done, count)?;
             }
-            let miss = (dist_sq(site(s), middle).sqrt() - radius).abs();
-            2.0 * radius * miss <= share * h * h
-        };
+            if std::mem::replace(&mut settled[c as usize], true) {
+                continue;
+            }
+            self.spread(c, &mut met, &mut front);
+            for &p in front
+                .iter()
+                .flat_map(|&s| &self.poles.of_sample[s as usize])
+            {
+                if p == NO_POLE || settled[p as usize] || asked[p as usize] == c {
+                    continue;
+                }
+                asked[p as usize] = c;
+                if self.redundant(p, c, &met) {
+                    settled[p as usize] = true;
+                    stands_for[p as usize] = c;
+                }
+            }
+        }
+        Ok(stands_for)
+    }
+
+    /// The samples that ball `c` covers, found outward from those it touches.
+    fn spread(&self, c: u32, met: &mut [(u32, bool)], front: &mut Vec<u32>) {
+        let (middle, radius) = self.ball(c);
         front.clear();
-        for &s in balls.touching(c) {
-            covered[s as usize] = c;
+        for &s in self.poles.balls.touching(c) {
+            met[s as usize] = (c, true);
             front.push(s);
         }
         let mut at = 0;
         while at < front.len() {
             let s = front[at];
             at += 1;
-            for &t in graph.near(s) {
-                if covered[t as usize] != c && covers(t) {
-                    covered[t as usize] = c;
+            for &t in self.graph.at(s) {
+                if met[t as usize].0 == c {
+                    continue;
+                }
+                let covers = self.covers(middle, radius, t);
+                met[t as usize] = (c, covers);
+                if covers {
                     front.push(t);
                 }
             }
         }
-        for &s in &front {
-            for p in poles.of_sample[s as usize] {
-                if p == NO_POLE || settled[p as usize] || balls.touches_frame[p as usize] {
-                    continue;
-                }
-                let other = centre(p);
-                let small = balls.sites[p as usize][3].sqrt() * step;
-                let same_side = |s: u32| {
-                    let (a, b) = (sub(middle, site(s)), sub(other, site(s)));
-                    dot(a, b) > 0.5 * norm(a) * norm(b)
-                };
-                let redundant = balls.touching(p).iter().all(|&t| {
-                    covered[t as usize] == c
-                        && 2.0 * graph.spacing[t as usize] <= small
-                        && same_side(t)
-                });
-                if redundant {
-                    settled[p as usize] = true;
-                    stands_for[p as usize] = c;
-                }
-            }
-        }
     }
-    stands_for
+
+    /// Centre and radius in steps of the samples' lattice.
+    fn ball(&self, b: u32) -> (Point, f64) {
+        let balls = &self.poles.balls;
+        let site = &balls.sites[b as usize];
+        let step = balls.lattice.step();
+        (position(site).map(|v| v * step), site[3].sqrt() * step)
+    }
+
+    fn site(&self, s: u32) -> Point {
+        position(&self.samples.sites[s as usize])
+    }
+
+    /// Whether a ball passes by a sample as near as it may.
+    fn covers(&self, middle: Point, radius: f64, s: u32) -> bool {
+        let h = self.spacing[s as usize];
+        if 2.0 * h > radius {
+            return false;
+        }
+        let miss = (dist_sq(self.site(s), middle).sqrt() - radius).abs();
+        2.0 * radius * miss <= self.share * h * h
+    }
+
+    /// Whether ball `c`, which covers what `met` says, stands for ball `p`.
+    fn redundant(&self, p: u32, c: u32, met: &[(u32, bool)]) -> bool {
+        let (middle, _) = self.ball(c);
+        let (other, small) = self.ball(p);
+        self.poles.balls.touching(p).iter().all(|&t| {
+            met[t as usize] == (c, true) && 2.0 * self.spacing[t as usize] <= small && {
+                let (a, b) = (sub(middle, self.site(t)), sub(other, self.site(t)));
+                dot(a, b) > 0.5 * norm(a) * norm(b)
+            }
+        })
+    }
 }
 
 /// Renumbers the balls that stay, in their old order.

@@ -75,30 +75,6 @@ impl Complex {
         at
     }
 
-    /// Cells by vertex as a compressed table: the cells at `v` are
-    /// `items[starts[v]..starts[v + 1]]`, ascending.
-    pub fn cells_by_vertex(&self, vertices: usize) -> (Vec<u32>, Vec<u32>) {
-        let mut starts = vec![0u32; vertices + 1];
-        for cell in &self.cells {
-            for &v in cell {
-                starts[v as usize + 1] += 1;
-            }
-        }
-        for v in 0..vertices {
-            starts[v + 1] += starts[v];
-        }
-        let mut next = starts.clone();
-        let mut items = vec![0u32; self.cells.len() * 4];
-        for (c, cell) in self.cells.iter().enumerate() {
-            for &v in cell {
-                let at = &mut next[v as usize];
-                items[*at as usize] = c as u32;
-                *at += 1;
-            }
-        }
-        (starts, items)
-    }
-
     /// Violations of the law of neighbours, as packed facets.
     pub fn check(&self) -> Vec<u32> {
         let mut bad = Vec::new();

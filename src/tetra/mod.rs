@@ -13,16 +13,20 @@ mod build;
 mod cavity;
 mod check;
 mod complex;
+mod edges;
 mod frame;
 mod number;
 pub mod order;
 mod region;
+mod stars;
 mod store;
 mod walk;
 
 pub use build::{extend, triangulate, Triangulation};
 pub use check::{check, Finding};
 pub use complex::{facet_of, pack, unpack, Complex, FACETS, MOST_CELLS, NONE};
+pub use edges::Edges;
+pub use stars::Stars;
 pub use walk::locate;
 
 use crate::predicates::{conflict, conflict_weighted, orient, Counts, Sign, Site};

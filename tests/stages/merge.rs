@@ -3,7 +3,7 @@
 use crate::common::shapes::{self, Shape};
 use crate::run::{position, Run};
 use powercrust::geom::vec3::{dist_sq, dot, norm, sub};
-use powercrust::poles::NO_POLE;
+use powercrust::poles::{Poles, NO_POLE};
 use powercrust::power::power_diagram;
 use powercrust::simplify::merge_redundant;
 use powercrust::surface::{power_shape, raw_crust, Placement, RawCrust};
@@ -22,11 +22,17 @@ fn clouds() -> Vec<(&'static str, Vec<Point>)> {
     ]
 }
 
+/// Merged by no share at all.
+fn unmerged(run: &Run) -> (Poles, Vec<f64>) {
+    let (poles, context) = (run.poles.clone(), Context::default());
+    merge_redundant(&run.samples, &run.delaunay, poles, 0.0, &context).unwrap()
+}
+
 #[test]
 fn no_share_changes_nothing() {
     for (name, points) in clouds() {
         let run = Run::of(&points, 0.0);
-        let (same, _) = merge_redundant(&run.samples, &run.delaunay, run.poles.clone(), 0.0);
+        let (same, _) = unmerged(&run);
         assert!(same.balls.sites == run.poles.balls.sites, "{name}");
         assert!(same.balls.touched == run.poles.balls.touched, "{name}");
         assert!(same.of_sample == run.poles.of_sample, "{name}");

@@ -28,13 +28,13 @@ impl Run {
         let samples = samples(points, 5.0).unwrap();
         let delaunay = delaunay(&samples, &context).unwrap();
         let poles = poles(&samples, &delaunay, &PoleOptions::default(), &context).unwrap();
-        let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, merge);
+        let (poles, spacing) =
+            merge_redundant(&samples, &delaunay, poles, merge, &context).unwrap();
         let step = poles.balls.lattice.step();
         let power = power_diagram(&poles.balls.sites, step, &context).unwrap();
         let balls = poles.balls.on_lattice();
-        let at: Vec<Point> = samples.sites.iter().map(position).collect();
-        let opposites = opposites(&poles.of_sample, &at, &balls);
-        let neighbours = Neighbours::of(&power);
+        let opposites = opposites(&poles.of_sample, &samples.sites, &balls);
+        let neighbours = Neighbours::of(&power, &context).unwrap();
         let evidence = Evidence {
             balls: &balls,
             outer: &poles.balls.touches_frame,
