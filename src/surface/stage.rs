@@ -9,7 +9,7 @@ use crate::context::{Context, Stage};
 use crate::delaunay::{times_power, Samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
-use crate::mesh::{check, CheckOptions, Finding, PolygonMesh};
+use crate::mesh::{check, CheckOptions, Finding, PolygonMesh, Shape};
 use crate::options::{Faces, Options};
 use crate::poles::Balls;
 use crate::power::PowerDiagram;
@@ -142,6 +142,7 @@ impl Job<'_> {
                 Faces::Polygons => 0.0,
             },
             single: options.single,
+            keep_samples: options.interpolate == Some(true),
             ball: &|b| {
                 let site = self.balls.sites.get(b as usize)?;
                 let centre = [site[0] * step, site[1] * step, site[2] * step];
@@ -160,7 +161,9 @@ impl Job<'_> {
         stats.part("crust: mend", &mut clock);
         if first {
             stats.crossings_found = mended.found;
+            stats.shape_before = Shape::of_triangles(&triangles.mesh);
         }
+        stats.shape_after = Shape::of_triangles(&mended.crust.mesh);
         stats.mend_rounds += mended.rounds;
         stats.mended_faces += mended.changes;
         stats.drawn_apart = mended.drawn_apart;
