@@ -1,7 +1,9 @@
 """What the scripts share: places, runs with time and memory, the judge, tables."""
 
+import contextlib
 import csv
 import importlib.util
+import io
 import json
 import os
 import subprocess
@@ -90,13 +92,38 @@ def stage_seconds(stats: dict) -> dict:
     return dict(stats["stats"]["seconds"])
 
 
+def judge_module():
+    """check_mesh.py as a module: it shares no code with this project."""
+    if "check_mesh" not in sys.modules:
+        place = shared() / "checks" / "check_mesh.py"
+        spec = importlib.util.spec_from_file_location("check_mesh", place)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        sys.modules["check_mesh"] = module
+    return sys.modules["check_mesh"]
+
+
 def judge(mesh: Path, *options) -> dict:
-    """The verdict of shared/checks/check_mesh.py; `failures` lists what is wrong."""
-    done = run([sys.executable, shared() / "checks" / "check_mesh.py", mesh, *options], 1800)
+    """The verdict of shared/checks/check_mesh.py; `failures` lists what is wrong.
+
+    In this process, for to start another and load MeshLab takes it longer than
+    to look at a small mesh.
+    """
+    module, said, words = judge_module(), io.StringIO(), sys.argv
+    sys.argv = ["check_mesh.py", str(mesh), *map(str, options)]
     try:
-        return json.loads(done.output)
+        with contextlib.redirect_stdout(said):
+            module.main()
+    except SystemExit:
+        pass
+    except Exception as error:  # whatever it is, it is no verdict
+        return {"failures": [f"the judge failed: {error!r}"]}
+    finally:
+        sys.argv = words
+    try:
+        return json.loads(said.getvalue())
     except json.JSONDecodeError:
-        return {"failures": [f"the judge failed: {done.errors.strip()[-200:]}"]}
+        return {"failures": ["the judge failed: it said nothing"]}
 
 
 def require_modules(*names: str) -> None:
@@ -135,6 +162,27 @@ def read_points(path: Path):
                 rows.append(row)
         points = np.array(rows, np.float64).reshape(-1, 3)
     return points[np.isfinite(points).all(axis=1)]
+
+
+CLOUD_FORMATS = (".ply", ".xyz", ".pts", ".pwn", ".txt", ".csv", ".npy", ".obj", ".off", ".stl")
+
+
+def clouds(names, most: int) -> list:
+    """The shared clouds whose names hold one of `names`, all if there are none;
+    with what TRUTH.csv says of each. Those of more points are told and left."""
+    folder, known = shared() / "scans" / "clouds", truths()
+    found = sorted(p for p in folder.iterdir() if p.suffix in CLOUD_FORMATS)
+    if names:
+        found = [p for p in found if any(name in p.name for name in names)]
+    kept = []
+    for path in found:
+        truth = known[f"clouds/{path.name}"]
+        if int(truth["points"]) > most:
+            print(f"(skipped {path.name}: {truth['points']} points, --most says {most})",
+                  file=sys.stderr)
+        else:
+            kept.append((path, truth))
+    return kept
 
 
 class Table:

@@ -367,6 +367,19 @@ impl Reconstruction {
             .collect()
     }
 
+    /// For each face the sum of the radii of its two polar balls: how far
+    /// apart the two sheets of the medial axis are there, as far as they are
+    /// seen from one sample. Outer balls of convex parts reach the frame, so
+    /// this is no measure of the solid: see [`Reconstruction::face_thickness`].
+    pub fn face_polar_radii(&self) -> Vec<f64> {
+        (0..self.crust.mesh.face_count())
+            .map(|f| {
+                self.pair(f)
+                    .map_or(f64::NAN, |(inner, outer)| inner.radius + outer.radius)
+            })
+            .collect()
+    }
+
     /// For each vertex how far apart samples are there: the distance from a
     /// sample to the nearest one next to it on the surface, blended at other
     /// vertices like every number.

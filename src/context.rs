@@ -67,11 +67,15 @@ impl Progress for Silent {
 #[error("cancelled")]
 pub struct Cancelled;
 
+/// The most threads that a call starts, however many are asked for: a hundred
+/// thousand would bring the machine to a standstill.
+pub const MOST_THREADS: usize = 256;
+
 /// Threads, progress and cancellation for one call.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
-    /// Threads to use; `None` takes all the machine offers. The result does
-    /// not depend on it.
+    /// Threads to use, at most [`MOST_THREADS`]; `None` takes all the machine
+    /// offers. The result does not depend on it.
     pub threads: Option<NonZeroUsize>,
     /// Where progress goes and where cancellation comes from.
     pub progress: &'a dyn Progress,
@@ -91,7 +95,7 @@ impl Context<'_> {
     pub fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         let pool = self.threads.and_then(|n| {
             rayon::ThreadPoolBuilder::new()
-                .num_threads(n.get())
+                .num_threads(n.get().min(MOST_THREADS))
                 .build()
                 .ok()
         });

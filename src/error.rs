@@ -36,7 +36,7 @@ pub enum Error {
         limit: u64,
     },
     /// 32-bit coordinates were asked for where they cannot tell points apart.
-    #[error("32-bit coordinates are {step:e} apart this far from the origin, the points spread over {extent:e}: keep 64 bits, or move the points nearer to the origin")]
+    #[error("32-bit coordinates are {step:.1e} apart this far from the origin, the points spread over {extent:.1e}: keep 64 bits, or move and scale the points")]
     Single {
         /// Distance between neighbouring 32-bit numbers there.
         step: f64,

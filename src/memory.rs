@@ -12,6 +12,24 @@ pub fn peak() -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
+/// The memory this machine or this container has, in bytes, swap included;
+/// `None` where the system does not tell (anything but Linux).
+pub fn of_machine() -> Option<u64> {
+    let whole = machine(&std::fs::read_to_string("/proc/meminfo").ok()?)?;
+    let group = std::fs::read_to_string("/sys/fs/cgroup/memory.max").ok();
+    let group = group.and_then(|text| text.trim().parse().ok());
+    Some(group.map_or(whole, |group: u64| group.min(whole)))
+}
+
+/// Memory and swap, from the text of `/proc/meminfo`.
+fn machine(text: &str) -> Option<u64> {
+    let kilobytes = |name: &str| -> Option<u64> {
+        let line = text.lines().find_map(|l| l.strip_prefix(name))?;
+        line.split_whitespace().next()?.parse().ok()
+    };
+    Some((kilobytes("MemTotal:")? + kilobytes("SwapTotal:").unwrap_or(0)) * 1024)
+}
+
 /// What a run is likely to need.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Estimate {
@@ -43,3 +61,16 @@ pub fn estimate(points: usize) -> Estimate {
 const PROCESS: u64 = 6_000_000;
 const PER_POINT: u64 = 3_900;
 const SECONDS_PER_POINT: f64 = 1e-4;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_of_a_machine_is_memory_and_swap() {
+        let text = "MemTotal:   2048 kB\nMemFree:  7 kB\nSwapTotal:  1024 kB\n";
+        assert_eq!(machine(text), Some(3 << 20));
+        assert_eq!(machine("MemTotal: 1 kB"), Some(1024));
+        assert_eq!(machine("MemFree: 1 kB"), None);
+    }
+}

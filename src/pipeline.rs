@@ -200,9 +200,13 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
 
 /// Whether 32-bit coordinates tell a hundred places apart across the samples.
 fn resolves(lattice: &Lattice) -> Result<(), Error> {
-    let extent = 2.0 * lattice.length_to_user(lattice.sample_half);
-    let farthest = lattice.centre.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let step = farthest * f64::from(f32::EPSILON);
+    let half = lattice.length_to_user(lattice.sample_half);
+    let extent = 2.0 * half;
+    let farthest = lattice.centre.iter().fold(half, |m, v| m.max(v.abs()));
+    let step = match farthest <= f64::from(f32::MAX) / 2.0 {
+        true => (farthest * f64::from(f32::EPSILON)).max(f64::from(f32::from_bits(1))),
+        false => f64::INFINITY,
+    };
     if step * 100.0 > extent {
         return Err(Error::Single { step, extent });
     }
@@ -247,5 +251,20 @@ mod tests {
         };
         let error = reconstruct(&points, &options, &Context::default()).unwrap_err();
         assert!(matches!(error, Error::Single { .. }), "{error}");
+    }
+
+    #[test]
+    fn what_32_bits_cannot_hold_is_refused() {
+        let options = Options {
+            single: true,
+            ..Options::default()
+        };
+        for (unit, held) in [(1e300, false), (1e-310, false), (1e36, true), (1e-36, true)] {
+            let corner = |k: u32| [k & 1, k >> 1 & 1, k >> 2 & 1].map(|b| f64::from(b) * unit);
+            let points: Vec<Point> = (0..8).map(corner).collect();
+            let result = reconstruct(&points, &options, &Context::default());
+            let refused = matches!(result, Err(Error::Single { .. }));
+            assert_eq!(refused, !held, "{unit:e}");
+        }
     }
 }

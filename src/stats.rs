@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::label::{Energy, Held};
+use crate::mesh::Shape;
 use crate::options::Options;
 use crate::predicates::Counts;
 
@@ -59,6 +60,10 @@ pub struct Stats {
     pub relabelled: usize,
     /// Shells of the size of rounding errors that were inside out: taken out.
     pub inverted_shells: usize,
+    /// The shape of the triangles before mending and coarsening.
+    pub shape_before: Shape,
+    /// Their shape afterwards; the polygons' triangles where there are polygons.
+    pub shape_after: Shape,
     /// Faces written (triangles unless polygons were asked for).
     pub faces: usize,
     /// Vertices written.
@@ -115,6 +120,8 @@ impl Stats {
             samples_lost: 0,
             relabelled: 0,
             inverted_shells: 0,
+            shape_before: Shape::default(),
+            shape_after: Shape::default(),
             faces: 0,
             vertices: 0,
             volume: 0.0,

@@ -715,6 +715,7 @@ fn values_of_the_input_are_kept() {
     for property in [
         "double thickness",
         "double gap",
+        "double polar_radii",
         "int component",
         "uchar hole",
     ] {
@@ -889,6 +890,13 @@ fn what_is_written_is_verified() {
         .fails(UNFIT, "not sound as it would be written")
         .says("nothing was written");
     assert!(!place.names().contains(&"coarse.obj".to_owned()));
+    // Not asked, it is written, and said.
+    place
+        .run("torus.xyz -o coarse.obj --precision 1")
+        .code(DONE)
+        .says("not sound as rounded in the file: ");
+    let fine = place.run("torus.xyz -o fine.obj --precision 12").code(DONE);
+    assert!(!fine.stderr.contains("not sound"), "{}", fine.stderr);
     place
         .run("check crust.glb")
         .fails(FILE, "GLB cannot be read");
@@ -927,6 +935,18 @@ fn threads_do_not_change_a_byte() {
     }
     assert_eq!(place.get("1.ply"), place.get("2.ply"));
     assert_eq!(place.get("1.ma"), place.get("2.ma"));
+}
+
+#[test]
+fn more_threads_than_any_machine_has() {
+    let place = Place::with_torus();
+    place.run("torus.xyz -o one.ply --threads 1").code(DONE);
+    let start = Instant::now();
+    place
+        .run("torus.xyz -o many.ply --threads 100000")
+        .code(DONE);
+    assert!(start.elapsed() < Duration::from_secs(60));
+    assert_eq!(place.get("one.ply"), place.get("many.ply"));
 }
 
 #[test]

@@ -1,19 +1,22 @@
 //! Real clouds: the few in `scans/` of the repository and, where the shared
-//! folder is there, its small ones with what TRUTH.csv knows of them.
-//! `scripts/corpus` runs all, through the program, with an independent judge.
+//! folder is there, its small ones. `tests/corpus.csv` has what is to be
+//! expected of each, and is a ratchet: topology as written there, and no more
+//! samples that are no vertices. Where TRUTH.csv knows the topology, it must be that
+//! or stand on the list of failures. `scripts/corpus` and `scripts/matrix` run
+//! all, through the program, with an independent judge.
 
 mod common;
 
-use common::crust;
 use common::judge::topology;
+use common::random::Random;
+use common::{crust, threads};
 use powercrust::io::{read_cloud, CloudFormat, ReadOptions};
-use powercrust::Options;
-use std::collections::HashMap;
+use powercrust::{reconstruct, Context, Options, Point};
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// Clouds whose topology does not come out right: sampled too sparsely (26
-/// bones that almost touch) or too unevenly (the back of the mannequin's head
-/// against its ears). One that does come out right must leave the list.
+/// bones that almost touch). One that does come out right must leave the list.
 const NOT_YET: [&str; 1] = ["footbones_verts.ply"];
 
 /// Clouds of more points are left to `scripts/corpus`.
@@ -37,25 +40,62 @@ fn clouds(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// Reads and reconstructs one cloud; components and genus of a sound mesh.
-fn reconstructed(path: &Path) -> (usize, i64) {
-    let name = path.display().to_string();
+fn points(path: &Path) -> Vec<Point> {
+    let name = path.display();
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{name}: {e}"));
     let options = ReadOptions { skip_invalid: true };
-    let cloud = read_cloud(&bytes, CloudFormat::sniff(&bytes), &options)
-        .unwrap_or_else(|e| panic!("{name}: {e}"));
-    let result = crust(&name, &cloud.points, &Options::default());
-    let found = topology(&result.crust.mesh);
-    println!(
-        "{name}: {} points, {} triangles, {} components, genus {}",
-        cloud.points.len(),
-        found.faces,
-        found.components,
-        found.genus()
-    );
-    assert!(found.sound(), "{name}: {found:?}");
+    let cloud = read_cloud(&bytes, CloudFormat::sniff(&bytes), &options);
+    cloud.unwrap_or_else(|e| panic!("{name}: {e}")).points
+}
+
+/// What came out of one cloud.
+struct Found {
+    components: usize,
+    genus: i64,
+    /// Samples that are no vertices: they lie within faces, or off them.
+    no_vertex: usize,
+}
+
+/// Reconstructs one cloud and holds it against the facts.
+fn reconstructed(path: &Path, facts: &HashMap<String, HashMap<String, String>>) -> Found {
+    let name = path.file_name().expect("a name").to_string_lossy();
+    let points = points(path);
+    let result = crust(&name, &points, &Options::default());
+    let topology = topology(&result.crust.mesh);
+    assert!(topology.sound(), "{name}: {topology:?}");
     assert!(result.crust.mesh.volume() > 0.0, "{name}: inside out");
-    (found.components, found.genus())
+    let met: HashSet<u32> = result.crust.vertex_samples.iter().copied().collect();
+    let samples = result.sample_source.len();
+    let found = Found {
+        components: topology.components,
+        genus: topology.genus(),
+        no_vertex: (0..samples as u32).filter(|s| !met.contains(s)).count(),
+    };
+    let (components, genus, without) = (found.components, found.genus, found.no_vertex);
+    let line = format!("{name},{samples},{components},{genus},{without}");
+    println!("{line}");
+    let fact = facts
+        .get(&*name)
+        .unwrap_or_else(|| panic!("add to tests/corpus.csv: {line}"));
+    let fact = |column: &str| fact[column].parse::<i64>().expect("a number");
+    assert_eq!(
+        (samples as i64, components as i64, genus),
+        (fact("samples"), fact("components"), fact("genus")),
+        "tests/corpus.csv has other samples, components or genus than {line}"
+    );
+    // A change elsewhere may cost a few; beyond that the number may only fall.
+    let most = fact("no_vertex") + fact("no_vertex") / 20 + 2;
+    let without = without as i64;
+    assert!(without <= most, "{line}: known with {}", fact("no_vertex"));
+    assert!(
+        without * 10 >= fact("no_vertex") * 9 - 20,
+        "better than known, so write it down: {line}"
+    );
+    found
+}
+
+fn facts() -> HashMap<String, HashMap<String, String>> {
+    rows(include_str!("corpus.csv"))
 }
 
 #[test]
@@ -63,7 +103,29 @@ fn clouds_of_the_repository() {
     let paths = clouds(&root().join("scans"));
     assert!(paths.len() >= 6, "scans went missing: {paths:?}");
     for path in &paths {
-        reconstructed(path);
+        reconstructed(path, &facts());
+    }
+}
+
+/// The same points in another order, on another number of threads: the same
+/// mesh, to the last bit and vertex for vertex.
+#[test]
+fn neither_order_nor_threads_matter() {
+    for path in &clouds(&root().join("scans")) {
+        let name = path.display();
+        let given = points(path);
+        if given.len() > 8_000 {
+            continue;
+        }
+        let expected = crust(&name.to_string(), &given, &Options::default());
+        let mut other = given.clone();
+        Random::new(7).shuffle(&mut other);
+        assert_ne!(given, other);
+        for (points, context) in [(&other, Context::default()), (&other, threads(1))] {
+            let found = reconstruct(points, &Options::default(), &context).expect("a surface");
+            assert!(found.crust.mesh == expected.crust.mesh, "{name}");
+            assert_eq!(found.crust.vertex_samples, expected.crust.vertex_samples);
+        }
     }
 }
 
@@ -94,7 +156,9 @@ fn small_shared_clouds() {
         if number("points").expect("a count") > MOST_POINTS {
             continue;
         }
-        let (components, genus) = reconstructed(&path);
+        let Found {
+            components, genus, ..
+        } = reconstructed(&path, &facts());
         if number("surface_closed") != Some(1) {
             continue;
         }

@@ -1,11 +1,18 @@
 //! Families of awkward clouds, by proptest: whatever comes, a typed error or a
-//! surface without fault. A failing cloud is shrunk before it is shown.
+//! surface without fault, and every stage on the way keeps what it promises.
+//! A failing cloud is shrunk before it is shown.
 //!
 //! The same clouds come every time; `POWERCRUST_CASES=500` makes more of each
 //! family, `POWERCRUST_SALT=7` others.
 
+use powercrust::delaunay::{self, delaunay, samples};
+use powercrust::label::{self, label, opposites, refine, Evidence, LabelOptions, Neighbours};
 use powercrust::mesh::{check, CheckOptions};
-use powercrust::{reconstruct, Context, Error, Faces, Options, Point};
+use powercrust::poles::{self, poles, PoleOptions};
+use powercrust::power::{self, power_diagram};
+use powercrust::simplify::merge_redundant;
+use powercrust::surface::{clean, power_shape, raw_crust, triangulate, CleanOptions, Placement};
+use powercrust::{reconstruct, Context, Error, Faces, Options, Point, Side};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -65,6 +72,107 @@ fn surface_or_error(points: &[Point], options: &Options) -> Result<bool, TestCas
     Ok(true)
 }
 
+/// The stages one after the other, each asked for all it promises. Clouds that
+/// are no samples have no stages.
+fn stages_keep_their_word(points: &[Point], options: &Options) -> Result<(), TestCaseError> {
+    let context = Context::default();
+    let Ok(samples) = samples(points, options.box_factor) else {
+        return Ok(());
+    };
+    // Samples: finite, distinct, in the lattice, each the image of a point.
+    let mut sites: Vec<_> = (samples.sites.iter().map(|s| [s[0], s[1], s[2]])).collect();
+    let at = sites.clone();
+    sites.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+    prop_assert!(sites.windows(2).all(|two| two[0] != two[1]));
+    prop_assert!(sites.iter().flatten().all(|x| x.fract() == 0.0));
+    for (sample, &source) in samples.points.iter().zip(&samples.source) {
+        prop_assert_eq!(sample, &points[source as usize]);
+    }
+    let delaunay = delaunay(&samples, &context).expect("nobody cancelled");
+    prop_assert_eq!(delaunay::check(&delaunay), vec![]);
+    let chosen = PoleOptions {
+        lambda: options.lambda,
+        sharp: options.sharp,
+    };
+    let poles = poles(&samples, &delaunay, &chosen, &context).expect("nobody cancelled");
+    if options.lambda.is_none() {
+        prop_assert_eq!(poles::check(&samples, &poles), vec![]);
+    }
+    let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge);
+    prop_assert_eq!(spacing.len(), samples.len());
+    prop_assert!(spacing.iter().all(|s| *s > 0.0));
+    let step = poles.balls.lattice.step();
+    let power = power_diagram(&poles.balls.sites, step, &context).expect("few balls");
+    prop_assert_eq!(power::check(&power), vec![]);
+    let balls = poles.balls.on_lattice();
+    let pairs = opposites(&poles.of_sample, &at, &balls);
+    let evidence = Evidence {
+        balls: &balls,
+        outer: &poles.balls.touches_frame,
+        opposites: &pairs,
+    };
+    let neighbours = Neighbours::of(&power);
+    let how = LabelOptions::default();
+    let mut labels = label(&evidence, &neighbours, &how, &context).expect("nobody cancelled");
+    let before = label::energy(&evidence, &neighbours, &labels.sides, &how).total();
+    refine(&evidence, &neighbours, &mut labels, &how);
+    let after = label::energy(&evidence, &neighbours, &labels.sides, &how).total();
+    prop_assert!(after <= before * (1.0 + 1e-12), "{before} to {after}");
+    let faults = label::check(&evidence, &neighbours, &how, &labels);
+    let fault = |f: &label::Finding| {
+        matches!(
+            f,
+            label::Finding::Count { .. } | label::Finding::InnerAtFrame { .. }
+        )
+    };
+    prop_assert!(!faults.iter().any(fault), "{faults:?}");
+    // Whatever the labels: those found, and all at odds with their neighbours.
+    let odd = |b: usize| match b.is_multiple_of(2) && !poles.balls.touches_frame[b] {
+        true => Side::Inner,
+        false => Side::Outer,
+    };
+    for sides in [labels.sides, (0..balls.len()).map(odd).collect()] {
+        let place = Placement {
+            touching: &|b| poles.balls.touching(b),
+            sample: &|s| at[s as usize],
+            to_user: &|p| p.map(|x| x * step),
+        };
+        let raw = raw_crust(&power, &sides, &place);
+        let mut after: Vec<u32> = raw.next.clone();
+        after.sort_unstable();
+        prop_assert!(after.iter().copied().eq(0..raw.next.len() as u32), "next");
+        for (h, &twin) in (0u32..).zip(&raw.twins) {
+            let next = raw.next[h as usize];
+            prop_assert!(twin != h && raw.twins[twin as usize] == h, "an open edge");
+            prop_assert_eq!(raw.corners[next as usize], raw.corners[twin as usize]);
+        }
+        let none = raw.balls.is_empty();
+        let polygons = clean(raw, &CleanOptions::default());
+        for crust in [&polygons, &triangulate(&polygons)] {
+            let judge = CheckOptions {
+                intersections: false,
+                ..CheckOptions::default()
+            };
+            let report = check(&crust.mesh, &judge, &context).expect("nobody cancelled");
+            let c = report.counts;
+            prop_assert!(
+                none || crust.mesh.face_count() == 0 || report.is_closed(),
+                "{c:?}"
+            );
+            prop_assert_eq!(c.pinched_vertex + c.unused_vertex + c.repeated_vertex, 0);
+        }
+        for side in [Side::Inner, Side::Outer] {
+            let shape = power_shape(&power, &balls, &sides, side);
+            let n = shape.balls.len() as u32;
+            let corners = shape.edges.iter().flatten();
+            prop_assert!(corners
+                .chain(shape.triangles.iter().flatten())
+                .all(|&b| b < n));
+        }
+    }
+    Ok(())
+}
+
 /// Runs a family; at least a share of its clouds, in percent, must have a
 /// surface, lest a family of nothing but errors passes for a test.
 fn family(name: &str, percent: u32, points: impl Strategy<Value = Vec<Point>>) {
@@ -82,6 +190,7 @@ fn family(name: &str, percent: u32, points: impl Strategy<Value = Vec<Point>>) {
     let surfaces = Cell::new(0);
     let outcome = runner.run(&(points, options()), |(points, options)| {
         surfaces.set(surfaces.get() + u32::from(surface_or_error(&points, &options)?));
+        stages_keep_their_word(&points, &options)?;
         Ok(())
     });
     match outcome {

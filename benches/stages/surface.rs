@@ -94,6 +94,7 @@ fn mend(bencher: Bencher, cloud: Cloud) {
     let how = MendOptions {
         flatness: Options::default().flatness,
         single: false,
+        keep_samples: false,
         spacing: &|s| run.spacing[s as usize],
         ball: &|b| run.balls.get(b as usize).copied(),
     };

@@ -179,7 +179,8 @@ pub struct Reconstruct {
     /// At edges the poles of a sample can leave it off the surface; `yes`
     /// adds balls that bring it back. By default that is done unless more
     /// than 5 % of the samples are off, which is taken for noise, and not
-    /// with --sharp.
+    /// with --sharp. `yes` also keeps the coordinates of samples in planes
+    /// to the last bit; else they may leave them by 2^-42 of the size.
     #[arg(long, value_name = "WHETHER", value_parser = yes_or_no, help_heading = METHOD)]
     pub interpolate: Option<bool>,
 
@@ -224,8 +225,8 @@ pub struct Reconstruct {
     ///
     /// Names: sample (the input point at each vertex, -1 for none), normals,
     /// colours, columns of the input; and of faces thickness, gap (how thick
-    /// the solid and the space before it are), component (0 the largest
-    /// part), hole (1 where nothing was sampled). By default sample and what
+    /// the solid and the space before it are), polar_radii (the sum of the
+    /// radii of the two polar balls), component (0 the largest part), hole (1 where nothing was sampled). By default sample and what
     /// the input has. Vertices that are no input points are blended from
     /// those next to them. PLY and JSON hold all of it, OBJ, OFF and GLB
     /// normals and colours, STL nothing.
@@ -262,7 +263,7 @@ pub struct Reconstruct {
     pub dry_run: bool,
 
     /// Refuse to start (exit code 1) where the run is likely to need more
-    /// memory than this: 800M, 2G.
+    /// memory than this: 800M, 2G. By default what the machine has.
     #[arg(long, value_name = "SIZE", value_parser = wanted::size, help_heading = REPORTING)]
     pub max_memory: Option<u64>,
 
@@ -271,7 +272,8 @@ pub struct Reconstruct {
     #[arg(long, help_heading = REPORTING)]
     pub json: bool,
 
-    /// Threads to use, by default all. The result does not depend on it.
+    /// Threads to use, by default all, at most 256. The result does not depend
+    /// on it.
     #[arg(long, value_name = "N", help_heading = REPORTING)]
     pub threads: Option<NonZeroUsize>,
 

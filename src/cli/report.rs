@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use powercrust::io::{as_written, ReadReport};
+use powercrust::io::{as_written, MeshFormat, ReadReport};
 use powercrust::mesh::{check, CheckOptions, Report as Findings};
 use powercrust::surface::ShellFilter;
 use powercrust::{Cancelled, Context, Faces, PowerShape, Reconstruction, Side};
@@ -18,6 +18,8 @@ use super::show::{counted, grouped, Talk};
 /// What the run found, for the summary, `--json` and `--stats`.
 pub struct Report {
     findings: Findings,
+    /// Rounding by the file spoils the mesh.
+    rounded: bool,
     reduced: Option<Reduced>,
     parts: usize,
     cavities: usize,
@@ -29,6 +31,29 @@ pub struct Report {
     summary: Value,
     /// For `--stats`.
     pub stats: Value,
+}
+
+/// Whether the file rounds coordinates more than the surface was made for:
+/// fewer digits than asked of it, or 32 bits about the middle of the mesh.
+fn rounds_later(plan: &Plan, result: &Reconstruction) -> bool {
+    let Some(out) = &plan.mesh else { return false };
+    match out.format {
+        MeshFormat::Glb => !result.stats.options.single,
+        _ => plan.write.digits.is_some(),
+    }
+}
+
+/// What is wrong with a mesh that could not be made sound.
+fn known_faults(crossings_left: usize, closed: bool) -> Option<String> {
+    let mut faults = Vec::new();
+    if crossings_left > 0 {
+        let pairs = counted(crossings_left, "pair", "pairs");
+        faults.push(format!("{pairs} of faces cross, which could not be mended"));
+    }
+    if !closed {
+        faults.push("the mesh is not closed".to_owned());
+    }
+    (!faults.is_empty()).then(|| faults.join("; "))
 }
 
 impl Report {
@@ -43,12 +68,13 @@ impl Report {
         // Closed, manifold, oriented: cheap and always looked at. The search
         // for crossing faces would be a quarter of the run (12,745 samples:
         // 0.13 of 0.52 s), so it waits to be asked for.
+        let rounded = rounds_later(plan, result);
         let options = CheckOptions {
-            intersections: plan.verify,
+            intersections: plan.verify || rounded,
             max_findings: 1,
             ..CheckOptions::default()
         };
-        let findings = match plan.mesh.as_ref().filter(|_| plan.verify) {
+        let findings = match plan.mesh.as_ref().filter(|_| options.intersections) {
             None => check(&result.crust.mesh, &options, context)?,
             Some(out) => {
                 let mut written = result.crust.mesh.clone();
@@ -74,6 +100,8 @@ impl Report {
                 "largest_volumes": &product.shells.part_volumes[..product.shells.part_volumes.len().min(20)],
                 "volume": findings.volume,
                 "area": findings.area,
+                "smallest_angle": findings.smallest_angle,
+                "aspects": findings.aspects,
             },
         });
         if plan.verify {
@@ -110,6 +138,7 @@ impl Report {
             }
         }
         Ok(Report {
+            rounded: rounded && !findings.is_watertight(),
             findings,
             reduced: product.reduced,
             parts: kept.part_volumes.len(),
@@ -137,6 +166,17 @@ impl Report {
             ),
         )
         .hint("nothing was written; without --verify it is written as it is"))
+    }
+
+    /// An error if what was written has faults that the library knows of.
+    pub fn admit(&self, plan: &Plan, crossings_left: usize) -> Result<(), Failure> {
+        match known_faults(crossings_left, self.findings.is_closed()) {
+            None => Ok(()),
+            Some(what) => Err(
+                Failure::new(Code::Unfit, format!("{}: {what}", self.place(plan)))
+                    .hint("the mesh was written as it is; please report this with the input"),
+            ),
+        }
     }
 
     fn place(&self, plan: &Plan) -> String {
@@ -188,13 +228,31 @@ impl Report {
                 parts.push(format!("not fewer ({} asked for)", grouped(reduced.asked)));
             }
         }
-        if !found.is_closed() {
-            parts.push("not closed (a bug: please report it)".to_owned());
+        if self.rounded {
+            let what = faults_in_words(found).join("; ");
+            parts.push(format!("not sound as rounded in the file: {what}"));
         }
         if plan.verify {
             parts.push("verified".to_owned());
         }
         parts.push(format!("{seconds:.2} s"));
         format!("{place}: {}", parts.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::known_faults;
+
+    #[test]
+    fn what_could_not_be_mended_is_said() {
+        assert_eq!(known_faults(0, true), None);
+        let said = known_faults(3, true).unwrap();
+        assert!(said.contains("3 pairs of faces cross"), "{said}");
+        let said = known_faults(1, false).unwrap();
+        assert!(
+            said.contains("1 pair of") && said.contains("not closed"),
+            "{said}"
+        );
     }
 }

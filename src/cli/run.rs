@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
-use powercrust::memory::{estimate, Estimate};
+use powercrust::memory::{estimate, of_machine, Estimate};
 use powercrust::{Bounds, Context, Error, Options, Point, Reconstruction, SampleError};
 use serde_json::json;
 
@@ -54,21 +54,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         Talk::Verbose,
         format_args!("this will take {}", in_words(&estimate)),
     );
-    if let Some(limit) = plan
-        .max_memory
-        .filter(|&limit| estimate.memory_bytes > limit)
-    {
-        return Err(Failure::new(
-            Code::Unfit,
-            format!(
-                "{}: this would take {}, more than --max-memory {}",
-                name(&plan.input),
-                in_words(&estimate),
-                bytes(limit)
-            ),
-        )
-        .hint("thin the points out, or allow more"));
-    }
+    enough_memory(plan, &estimate)?;
     if plan.dry_run {
         tell_estimate(plan, &cloud, &estimate)?;
         return Ok(ExitCode::SUCCESS);
@@ -110,8 +96,32 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
 
     report.verdict(plan)?;
     write_results(plan, &result, &product, &report)?;
+    report.admit(plan, result.stats.crossings_left)?;
     report.tell(plan, start);
     Ok(ExitCode::SUCCESS)
+}
+
+/// An error rather than a process that the system ends: what a run is likely
+/// to need must not be more than was allowed, or than the machine has.
+fn enough_memory(plan: &Plan, estimate: &Estimate) -> Result<(), Failure> {
+    let (limit, whose) = match plan.max_memory {
+        Some(limit) => (Some(limit), "--max-memory"),
+        None if plan.dry_run => (None, ""),
+        None => (of_machine(), "the memory of this machine,"),
+    };
+    match limit.filter(|&limit| estimate.memory_bytes > limit) {
+        None => Ok(()),
+        Some(limit) => Err(Failure::new(
+            Code::Unfit,
+            format!(
+                "{}: this would take {}, more than {whose} {}",
+                name(&plan.input),
+                in_words(estimate),
+                bytes(limit)
+            ),
+        )
+        .hint("thin the points out, or allow more by --max-memory")),
+    }
 }
 
 /// The answer to `--dry-run`.

@@ -5,12 +5,13 @@ use powercrust::io::MeshFormat;
 use powercrust::surface::{Keep, MinVolume};
 
 /// The names of `--attributes` that are not columns of the input.
-pub const OWN: [&str; 7] = [
+pub const OWN: [&str; 8] = [
     "sample",
     "normals",
     "colours",
     "thickness",
     "gap",
+    "polar_radii",
     "component",
     "hole",
 ];

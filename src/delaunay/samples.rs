@@ -5,7 +5,8 @@
 //! of the bounding box (2.3e-13: a tenth of a nanometre on a building). The lattice is what makes every later
 //! decision exact in fixed width, whatever the scale: coordinates of 1e300 and
 //! of 1e-300 look alike to it. Points that meet on one lattice point are one
-//! sample. Output coordinates of samples are the given ones, bit for bit.
+//! sample. Output coordinates of samples are the given ones, bit for bit, but
+//! for those in planes (`unlevel` in `surface/mend_place.rs`).
 
 use std::cmp::Ordering;
 

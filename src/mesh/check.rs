@@ -60,7 +60,7 @@ impl Default for CheckOptions {
 /// # Ok::<(), powercrust::Cancelled>(())
 /// ```
 pub fn check(mesh: &PolygonMesh, o: &CheckOptions, cx: &Context) -> Result<Report, Cancelled> {
-    in_pool(cx, || match o.f32 {
+    cx.install(|| match o.f32 {
         true => {
             let rounded = |p: &Point| p.map(|x| f64::from(x as f32));
             let vertices: Vec<Point> = mesh.vertices.iter().map(rounded).collect();
@@ -68,18 +68,6 @@ pub fn check(mesh: &PolygonMesh, o: &CheckOptions, cx: &Context) -> Result<Repor
         }
         false => judge(&mesh.vertices, mesh, o, cx),
     })
-}
-
-/// Runs `work` with the context's number of threads.
-pub(super) fn in_pool<R: Send>(cx: &Context, work: impl FnOnce() -> R + Send) -> R {
-    let pool = cx.threads.and_then(|n| {
-        let builder = rayon::ThreadPoolBuilder::new().num_threads(n.get());
-        builder.build().ok()
-    });
-    match pool {
-        Some(pool) => pool.install(work),
-        None => work(),
-    }
 }
 
 /// Counts all findings and keeps the first of each kind.

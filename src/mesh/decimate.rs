@@ -123,7 +123,7 @@ pub fn decimate(
     cx: &Context,
 ) -> Result<Decimated, DecimateError> {
     let mut work = Work::new(mesh)?;
-    super::check::in_pool(cx, || work.reduce(faces, cx))?;
+    cx.install(|| work.reduce(faces, cx))?;
     Ok(work.result(mesh))
 }
 

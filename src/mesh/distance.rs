@@ -65,7 +65,7 @@ impl Surface {
 
     /// The distances of many points, in their order, computed in parallel.
     pub fn distances(&self, points: &[Point], cx: &Context) -> Result<Vec<f64>, Cancelled> {
-        super::check::in_pool(cx, || {
+        cx.install(|| {
             let mut distances = vec![0.0; points.len()];
             distances
                 .par_chunks_mut(CHUNK)

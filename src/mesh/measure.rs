@@ -8,6 +8,7 @@ use super::PolygonMesh;
 use crate::geom::vec3::plain::{dot, larger, norm, norm_sq};
 use crate::geom::vec3::{cross, sub};
 use crate::geom::{Bounds, Point};
+use rayon::prelude::*;
 
 /// Volume and area of a set of faces.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,12 +18,12 @@ pub(super) struct Size {
 }
 
 /// The shape of triangles.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shape {
-    /// In degrees; `None` for no triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Shape {
+    /// The smallest angle of a triangle, in degrees; `None` for no triangles.
     pub smallest_angle: Option<f64>,
-    /// Triangles by longest side over height: up to 2, 4, 10, 100, 1000,
-    /// 10 000, and the rest.
+    /// Triangles by longest side over height (1.15 for equilateral ones): up
+    /// to 2, 4, 10, 100, 1000, 10 000, and the rest.
     pub aspects: [u64; 7],
 }
 
@@ -96,28 +97,49 @@ fn settle(
 
 /// Smallest angle and the histogram of aspects of all triangles.
 pub(super) fn shape(points: &[Point], frame: &Frame, triangles: &Triangles) -> Shape {
-    let mut aspects = [0; 7];
-    // The tangent of the smallest angle, and the sine and cosine it comes from.
-    let mut least = (f64::INFINITY, 0.0, 0.0);
-    for &t in &triangles.corners {
-        let [a, b, c] = place(points, t).map(|p| frame.enter_sizes(p));
+    let place = |t: &[u32; 3]| place(points, *t).map(|p| frame.enter_sizes(p));
+    (triangles.corners.par_iter())
+        .fold(Shape::default, |shape, t| shape.and(place(t)))
+        .reduce(Shape::default, Shape::or)
+}
+
+impl Shape {
+    /// The shape of the triangles of a mesh that has no other faces and lies
+    /// where squares of lengths are in the range of doubles.
+    pub(crate) fn of_triangles(mesh: &PolygonMesh) -> Shape {
+        let at = |v: u32| mesh.vertices[v as usize];
+        (mesh.corners.par_chunks_exact(3))
+            .fold(Shape::default, |shape, t| {
+                shape.and([at(t[0]), at(t[1]), at(t[2])])
+            })
+            .reduce(Shape::default, Shape::or)
+    }
+
+    /// With one more triangle.
+    fn and(mut self, [a, b, c]: [Point; 3]) -> Shape {
         let sides = [sub(c, b), sub(a, c), sub(b, a)];
         let squares = sides.map(norm_sq);
         let doubled = norm(cross(sides[1], sides[2]));
         let aspect = larger(larger(squares[0], squares[1]), squares[2]) / doubled;
         let class = ASPECTS.iter().position(|&most| aspect <= most);
-        aspects[class.unwrap_or(ASPECTS.len())] += 1;
+        self.aspects[class.unwrap_or(ASPECTS.len())] += 1;
         // The smallest angle lies between the two longer sides.
         let shortest = (1..3).fold(0, |k, j| if squares[j] < squares[k] { j } else { k });
         let cosine = dot(sides[(shortest + 1) % 3], sides[(shortest + 2) % 3]).abs();
-        let tangent = if doubled > 0.0 { doubled / cosine } else { 0.0 };
-        if tangent < least.0 {
-            least = (tangent, doubled, cosine);
-        }
+        let angle = doubled.atan2(cosine).to_degrees();
+        let least = self.smallest_angle.map_or(angle, |least| least.min(angle));
+        self.smallest_angle = Some(least);
+        self
     }
-    Shape {
-        smallest_angle: (least.0 < f64::INFINITY).then(|| least.1.atan2(least.2).to_degrees()),
-        aspects,
+
+    /// Of both together.
+    fn or(mut self, other: Shape) -> Shape {
+        let angles = [self.smallest_angle, other.smallest_angle];
+        self.smallest_angle = angles.into_iter().flatten().reduce(f64::min);
+        for (count, more) in self.aspects.iter_mut().zip(other.aspects) {
+            *count += more;
+        }
+        self
     }
 }
 

@@ -28,7 +28,7 @@ pub use check::{check, CheckOptions};
 pub use decimate::{decimate, DecimateError, Decimated};
 pub use deviation::{deviation, Deviation};
 pub use distance::Surface;
-pub use measure::{component_volumes, components};
+pub use measure::{component_volumes, components, Shape};
 pub use nesting::enclosing;
 pub(crate) use nesting::Anatomy;
 pub use report::{Counts, Finding, Report, Shell};

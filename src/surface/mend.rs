@@ -24,7 +24,8 @@
 //!
 //! - **Plane faces.** Pieces of one power face that share no vertex lie in one
 //!   plane to the last bit. They do not meet, but tests that are not exact may
-//!   say so; vertices that are no samples leave the plane by a hair (`unlevel`).
+//!   say so; vertices leave the plane by a hair (`unlevel`), samples by no more
+//!   than what tells two of them apart, and not where all must be met.
 //!
 //! Before all that, power vertices are moved onto the surface (`mend_place`).
 //!
@@ -64,6 +65,8 @@ pub struct MendOptions<'a> {
     pub flatness: f64,
     /// New positions are rounded to single precision, as those given are.
     pub single: bool,
+    /// Samples stay where they are to the last bit, also in planes.
+    pub keep_samples: bool,
     /// The spacing at each sample, in the units of the mesh.
     pub spacing: &'a (dyn Fn(u32) -> f64 + Sync),
     /// Each ball, in the units of the mesh.
@@ -151,7 +154,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
         cx.advance(Stage::Crust, 1, 3)?;
         mesh.compact(&mut spacing);
         laps.lap("coarsen");
-        unlevel(&mut mesh, UNLEVEL, &spacing, &round);
+        unlevel(&mut mesh, UNLEVEL, !options.keep_samples, &spacing, &round);
     }
     let shells = Shells::of(&mesh);
     let moved = draw_apart(&mut mesh, &round);

@@ -16,7 +16,7 @@
 use super::mend_coarsen::area;
 use super::mend_mesh::TriMesh;
 use super::raw::NONE;
-use crate::geom::vec3::plain::{dot, norm};
+use crate::geom::vec3::plain::{dist_sq, dot, norm};
 use crate::geom::vec3::{add, scale, sub};
 use crate::geom::{Ball, Point};
 use rayon::prelude::*;
@@ -27,6 +27,10 @@ const AGREE: f64 = 0.9;
 /// Triangles less high than this share of their longest side are needles,
 /// whose own normals say nothing.
 const NEEDLE: f64 = 0.1;
+
+/// Samples leave planes by this share of the size of the mesh: the step of the
+/// lattice that tells samples apart, far above rounding.
+const HAIR: f64 = 1.0 / (1u64 << 42) as f64;
 
 /// Vertices that one task deals with.
 const CHUNK: usize = 8192;
@@ -207,13 +211,16 @@ pub(crate) fn settle(
     moves.len()
 }
 
-/// Takes vertices that are no samples a hair off the plane of their triangles,
-/// by about `share` of the length at each. Power faces are plane to the last
-/// bit, and pieces of one face that share nothing are then told apart by
-/// rounding alone in tests that are not exact (MeshLab's finds crossings).
+/// Takes vertices a hair off the plane of their triangles: those that are no
+/// samples by about `share` of the length at each, and, if `samples` says so,
+/// samples in a plane by about [`HAIR`] of the size of the mesh. Power faces are
+/// plane to the last bit, samples of plane parts too, and triangles of one plane
+/// that share nothing are then told apart by rounding alone in tests that are
+/// not exact (MeshLab's finds crossings).
 pub(crate) fn unlevel(
     mesh: &mut TriMesh,
     share: f64,
+    samples: bool,
     length: &[f64],
     round: &(dyn Fn(Point) -> Point + Sync),
 ) {
@@ -225,17 +232,56 @@ pub(crate) fn unlevel(
             *sum = add(*sum, n);
         }
     }
+    let hair = HAIR * extent(&mesh.points);
+    let mut fan = Vec::new();
+    let mut moves = Vec::new();
     for (v, &sum) in sums.iter().enumerate() {
-        if mesh.out[v] == NONE || mesh.samples[v] != NONE {
+        if mesh.out[v] == NONE {
             continue;
         }
+        let (p, n) = (mesh.points[v], unit(sum));
+        mesh.fan(v as u32, &mut fan);
+        let heads = fan.iter().map(|&h| mesh.head(h) as usize);
+        let far = if mesh.samples[v] == NONE {
+            // A part without samples has no spacing: the edges tell.
+            let longest = || heads.fold(0.0, |m: f64, w| m.max(dist_sq(p, mesh.points[w])));
+            share
+                * if length[v] > 0.0 {
+                    length[v]
+                } else {
+                    longest().sqrt()
+                }
+        } else {
+            // Samples that share a coordinate lie in a plane to the last bit,
+            // and do no harm.
+            let known = heads.clone().filter(|&w| mesh.samples[w] != NONE);
+            let exact = (0..3).any(|k| known.clone().all(|w| mesh.points[w][k] == p[k]));
+            let mut offs = heads.map(|w| (dot(sub(mesh.points[w], p), n).abs(), length[w]));
+            let plane = offs.all(|(off, l)| off <= 4.0 * share * l.max(length[v]));
+            if exact || !plane || !samples {
+                continue;
+            }
+            hair
+        };
         // In [0.5, 1), up or down.
         let h = (v as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         let size = 0.5 + (h >> 12) as f64 / (1u64 << 53) as f64;
         let size = if h & 1 == 0 { size } else { -size };
-        let p = add(mesh.points[v], scale(unit(sum), size * share * length[v]));
-        mesh.shift(v as u32, round(p));
+        moves.push((v as u32, round(add(p, scale(n, size * far)))));
     }
+    for (v, p) in moves {
+        mesh.shift(v, p);
+    }
+}
+
+/// The longest side of the box of the points.
+fn extent(points: &[Point]) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in points {
+        low = [0, 1, 2].map(|k| p[k].min(low[k]));
+        high = [0, 1, 2].map(|k| p[k].max(high[k]));
+    }
+    (0..3).fold(0.0, |most, k| f64::max(most, high[k] - low[k]))
 }
 
 /// What is known of the surface at the vertices.

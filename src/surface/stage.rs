@@ -11,7 +11,7 @@ use crate::context::{Context, Stage};
 use crate::delaunay::{times_power, Samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
-use crate::mesh::{check, CheckOptions, Finding, PolygonMesh};
+use crate::mesh::{check, CheckOptions, Finding, PolygonMesh, Shape};
 use crate::options::{Faces, Options};
 use crate::poles::Balls;
 use crate::power::PowerDiagram;
@@ -143,12 +143,16 @@ impl Job<'_> {
             return Err(self.nothing());
         }
         stats.part("crust: triangulate", &mut clock);
+        if first {
+            stats.shape_before = Shape::of_triangles(&triangles.mesh);
+        }
         let how = MendOptions {
             flatness: match options.faces {
                 Faces::Triangles => options.flatness,
                 Faces::Polygons => 0.0,
             },
             single: options.single,
+            keep_samples: options.interpolate == Some(true),
             ball: &|b| {
                 let site = self.balls.sites.get(b as usize)?;
                 let centre = [site[0] * step, site[1] * step, site[2] * step];
@@ -171,6 +175,7 @@ impl Job<'_> {
         if first {
             stats.crossings_found = mended.found;
         }
+        stats.shape_after = Shape::of_triangles(&mended.crust.mesh);
         stats.mend_rounds += mended.rounds;
         stats.mended_faces += mended.changes;
         stats.drawn_apart = mended.drawn_apart;
