@@ -158,25 +158,14 @@ pub fn samples(points: &[Point], box_factor: f64) -> Result<Samples, SampleError
     };
     keyed.par_sort_unstable_by(along_curve);
 
-    // Runs of equal sites are one sample; rounds keep the order of the curve.
-    let mut firsts: Vec<u32> = Vec::with_capacity(given);
-    for k in 0..given {
-        if k == 0 || keyed[k].2 != keyed[k - 1].2 {
-            firsts.push(k as u32);
-        }
-    }
-    let distinct = firsts.len();
+    // Runs of equal sites are one sample.
+    let starts: Vec<usize> = (0..given)
+        .filter(|&k| k == 0 || keyed[k].2 != keyed[k - 1].2)
+        .collect();
+    let distinct = starts.len();
     if distinct < 4 {
         return Err(SampleError::TooFew { given, distinct });
     }
-    let rounds = order::rounds(distinct);
-    let mut sequence: Vec<(u32, u32)> = firsts
-        .iter()
-        .enumerate()
-        .map(|(k, &at)| (order::round(&keyed[at as usize].2, rounds), k as u32))
-        .collect();
-    sequence.sort_unstable();
-
     let mut made = Samples {
         points: Vec::with_capacity(distinct),
         sites: Vec::with_capacity(distinct),
@@ -185,11 +174,8 @@ pub fn samples(points: &[Point], box_factor: f64) -> Result<Samples, SampleError
         of_input: vec![0; given],
         lattice,
     };
-    for (_, k) in sequence {
-        let from = firsts[k as usize] as usize;
-        let to = firsts
-            .get(k as usize + 1)
-            .map_or(given, |&next| next as usize);
+    let ends = starts[1..].iter().copied().chain([given]);
+    for (&from, to) in starts.iter().zip(ends) {
         let id = made.sites.len() as u32;
         for (_, index, _) in &keyed[from..to] {
             made.of_input[*index as usize] = id;

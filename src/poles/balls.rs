@@ -140,17 +140,6 @@ pub(super) fn gather(
         }
     }
     let count = firsts.len();
-    let rounds = order::rounds(count);
-    let mut sequence: Vec<(u32, u32)> = firsts
-        .iter()
-        .enumerate()
-        .map(|(k, &at)| {
-            let p = keyed[at as usize].1;
-            (order::round(&[p[0], p[1], p[2], 0.0], rounds), k as u32)
-        })
-        .collect();
-    sequence.sort_unstable();
-
     let mut balls = Balls {
         sites: Vec::with_capacity(count),
         lattice,
@@ -161,11 +150,9 @@ pub(super) fn gather(
     balls.touch_starts.push(0);
     let mut ball_of_cell = vec![NO_POLE; centres.len()];
     let mut corners: Vec<u32> = Vec::new();
-    for (_, k) in sequence {
-        let from = firsts[k as usize] as usize;
-        let to = firsts
-            .get(k as usize + 1)
-            .map_or(keyed.len(), |&next| next as usize);
+    for (k, &from) in firsts.iter().enumerate() {
+        let from = from as usize;
+        let to = firsts.get(k + 1).map_or(keyed.len(), |&next| next as usize);
         let id = balls.sites.len() as u32;
         corners.clear();
         for (_, _, c) in &keyed[from..to] {

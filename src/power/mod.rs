@@ -88,40 +88,30 @@ impl PowerDiagram {
     /// of [`power_diagram`] hold for all of them together.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] and [`Error::Cancelled`]; the diagram has lost its
-    /// cells then.
+    /// [`Error::TooLarge`] and [`Error::Cancelled`]; the diagram is of no use
+    /// then.
     pub fn extend(&mut self, balls: &[Site], context: &Context) -> Result<(), Error> {
         if balls.is_empty() {
             return Ok(());
         }
         let (old, added) = (self.balls as u32, balls.len() as u32);
-        // The sentinels keep their ids while inserting; then they move back.
-        let mut sites = self.sites.clone();
-        sites.extend_from_slice(balls);
-        let complex = std::mem::take(&mut self.complex);
+        let sentinels = self.sites.split_off(self.balls);
+        self.sites.extend_from_slice(balls);
+        self.sites.extend(sentinels);
+        let mut complex = std::mem::take(&mut self.complex);
+        for v in complex.cells.iter_mut().flatten() {
+            *v += if *v < old { 0 } else { added };
+        }
         let built = extend(
-            &InPower(&sites),
+            &InPower(&self.sites),
             complex,
-            old + 8..old + 8 + added,
+            old..old + added,
             Stage::Power,
             context,
         )?;
-        let renamed = |v: u32| match v {
-            v if v < old => v,
-            v if v < old + 8 => v + added,
-            v => v - 8,
-        };
         self.complex = built.complex;
-        for cell in &mut self.complex.cells {
-            *cell = cell.map(renamed);
-        }
-        sites.copy_within(old as usize + 8.., old as usize);
-        let sentinels = self.sites[old as usize..].to_vec();
-        sites.truncate((old + added) as usize);
-        sites.extend(sentinels);
-        self.sites = sites;
         self.balls += balls.len();
-        self.hidden.extend(built.hidden.into_iter().map(renamed));
+        self.hidden.extend(built.hidden);
         self.hidden.sort_unstable();
         self.counts += built.counts;
         Ok(())

@@ -29,7 +29,7 @@ mod orient;
 mod power;
 pub mod wide;
 
-pub use orient::orient;
+pub use orient::{orient, separating};
 pub use power::{conflict, conflict_weighted};
 
 /// A site: integer coordinates and, last, an integer weight (the squared
@@ -62,7 +62,8 @@ impl Sign {
     }
 }
 
-/// How many decisions each stage took.
+/// How many decisions each stage took. Several threads take some twice, for
+/// insertions put off: the numbers depend on threads, what was decided does not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Counts {
     /// Orientation tests decided by the float filter.
@@ -85,6 +86,14 @@ impl std::ops::AddAssign for Counts {
         self.sphere_exact += other.sphere_exact;
         self.sphere_perturbed += other.sphere_perturbed;
     }
+}
+
+/// The squared distance of two sites, rounded: a hint where to start, never
+/// a decision.
+#[inline]
+pub fn distance_sq(a: &Site, b: &Site) -> f64 {
+    let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
 }
 
 /// The order of perturbation: lexicographic by coordinates, then weight.

@@ -3,37 +3,92 @@
 use super::wide::Wide;
 use super::{Counts, Sign, Site};
 
-/// The sign of `det(b-a, c-a, d-a)`.
-///
 /// Filter: with exact differences and u = 2^-53, a 2 by 2 minor errs by at
 /// most 2.01 u times its permanent, the sum of three products with it by at most 5.01 u
 /// times the permanent of the matrix, itself at most 6 mx my mz: 30.1 u in
 /// all, for which 2^-48 = 32 u stands.
+const FILTER: f64 = 3.552_713_678_800_501e-15;
+
+/// A row of a determinant.
+type Row = [f64; 3];
+
+#[inline]
+fn minus(a: &Site, b: &Site) -> Row {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// The sign of `det(b-a, c-a, d-a)`.
 #[inline]
 pub fn orient(a: &Site, b: &Site, c: &Site, d: &Site, counts: &mut Counts) -> Sign {
-    let (bx, by, bz) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-    let (cx, cy, cz) = (c[0] - a[0], c[1] - a[1], c[2] - a[2]);
-    let (dx, dy, dz) = (d[0] - a[0], d[1] - a[1], d[2] - a[2]);
-    let value = bx * (cy * dz - cz * dy) + by * (cz * dx - cx * dz) + bz * (cx * dy - cy * dx);
-    let largest = |p: f64, q: f64, r: f64| p.abs().max(q.abs()).max(r.abs());
-    let bound =
-        3.552_713_678_800_501e-15 * largest(bx, cx, dx) * largest(by, cy, dy) * largest(bz, cz, dz);
-    if value > bound {
-        counts.orient_filter += 1;
-        return Sign::Positive;
+    sign(minus(b, a), minus(c, a), minus(d, a), counts)
+}
+
+/// A facet of the positive cell that has the site strictly on its other side;
+/// facet `known` is known to have it on this side.
+#[inline]
+pub fn separating(cell: [&Site; 4], p: &Site, known: usize, counts: &mut Counts) -> Option<usize> {
+    let [a, b, c, d] = [
+        minus(cell[0], p),
+        minus(cell[1], p),
+        minus(cell[2], p),
+        minus(cell[3], p),
+    ];
+    // The facets as in `tetra::FACETS`, counterclockwise seen from outside.
+    if known != 0 && sign(b, c, d, counts) == Sign::Negative {
+        Some(0)
+    } else if known != 1 && sign(a, d, c, counts) == Sign::Negative {
+        Some(1)
+    } else if known != 2 && sign(a, b, d, counts) == Sign::Negative {
+        Some(2)
+    } else if known != 3 && sign(a, c, b, counts) == Sign::Negative {
+        Some(3)
+    } else {
+        None
     }
-    if value < -bound {
+}
+
+/// The sign of the determinant of three rows.
+#[inline]
+fn sign(b: Row, c: Row, d: Row, counts: &mut Counts) -> Sign {
+    let value = b[0] * (c[1] * d[2] - c[2] * d[1])
+        + b[1] * (c[2] * d[0] - c[0] * d[2])
+        + b[2] * (c[0] * d[1] - c[1] * d[0]);
+    let largest = |k: usize| b[k].abs().max(c[k].abs()).max(d[k].abs());
+    let bound = FILTER * largest(0) * largest(1) * largest(2);
+    if value.abs() > bound {
         counts.orient_filter += 1;
-        return Sign::Negative;
+        return if value > 0.0 {
+            Sign::Positive
+        } else {
+            Sign::Negative
+        };
     }
     counts.orient_exact += 1;
-    exact([[bx, by, bz], [cx, cy, cz], [dx, dy, dz]])
+    exact([b, c, d])
 }
 
 #[cold]
 #[inline(never)]
-fn exact(rows: [[f64; 3]; 3]) -> Sign {
-    let [b, c, d] = rows.map(|row| row.map(|v| v as i128));
+fn exact(rows: [Row; 3]) -> Sign {
+    let mut whole = [[0i64; 3]; 3];
+    let mut wide = 0;
+    for k in 0..3 {
+        for axis in 0..3 {
+            whole[k][axis] = rows[k][axis] as i64;
+            wide |= whole[k][axis].unsigned_abs();
+        }
+    }
+    // Coordinates on a coarse grid are multiples of a power of two.
+    let zeros = wide.trailing_zeros().min(63);
+    let [b, c, d] = whole.map(|row| row.map(|v| v >> zeros));
+    let bits = (64 - wide.leading_zeros()).saturating_sub(zeros);
+    if 3 * bits + 3 <= 63 {
+        let value = b[0] * (c[1] * d[2] - c[2] * d[1])
+            + b[1] * (c[2] * d[0] - c[0] * d[2])
+            + b[2] * (c[0] * d[1] - c[1] * d[0]);
+        return Sign::of(i128::from(value));
+    }
+    let [b, c, d] = [b, c, d].map(|row| row.map(i128::from));
     let x = c[1] * d[2] - c[2] * d[1];
     let y = c[2] * d[0] - c[0] * d[2];
     let z = c[0] * d[1] - c[1] * d[0];
@@ -77,6 +132,31 @@ mod tests {
             let mut counts = Counts::default();
             let ours = orient(&p[0], &p[1], &p[2], &p[3], &mut counts);
             prop_assert_eq!(ours, oracle(p));
+        }
+
+        #[test]
+        fn agrees_with_robust_on_coarse_grids(p in prop::array::uniform4(site(9)), zeros in 0..42) {
+            let p = p.map(|s| s.map(|v| v * 2f64.powi(zeros)));
+            let mut counts = Counts::default();
+            prop_assert_eq!(orient(&p[0], &p[1], &p[2], &p[3], &mut counts), oracle(p));
+        }
+
+        /// The facet found has the site strictly behind it; with none found no
+        /// facet has.
+        #[test]
+        fn separating_agrees_with_the_orientation(p in prop::array::uniform5(site(4)), known in 0usize..5) {
+            let mut counts = Counts::default();
+            let cell = [&p[0], &p[1], &p[2], &p[3]];
+            prop_assume!(orient(cell[0], cell[1], cell[2], cell[3], &mut counts) == Sign::Positive);
+            let behind: Vec<usize> = (0..4)
+                .filter(|&i| {
+                    let mut replaced = cell;
+                    replaced[i] = &p[4];
+                    let sign = orient(replaced[0], replaced[1], replaced[2], replaced[3], &mut counts);
+                    i != known && sign == Sign::Negative
+                })
+                .collect();
+            prop_assert_eq!(separating(cell, &p[4], known, &mut counts), behind.first().copied());
         }
 
         #[test]

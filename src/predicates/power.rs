@@ -27,25 +27,47 @@ pub fn conflict_weighted(cell: [&Site; 4], p: &Site, counts: &mut Counts) -> boo
 /// Filter: a lifted difference errs by at most 4.01 u (|d|² + |w_v - w_p|), a
 /// 3 by 3 minor by 5.01 u times its permanent, their product by 10.1 u, the sum of four by
 /// 13.1 u times 24 mx my mz ml: 315 u in all, for which 2^-44.6 = 336 u stands.
+/// Here u = 2^-53, mx, my, mz are the largest differences along the axes and ml is
+/// the largest |d|² + |w_v - w_p|.
 const FILTER: f64 = 336.0 * 1.110_223_024_625_156_5e-16;
+
+/// The rows of the determinant.
+#[derive(Clone, Copy)]
+struct Rows {
+    /// Differences, exact.
+    d: [[f64; 3]; 4],
+    /// Lifted differences, rounded.
+    lift: [f64; 4],
+    /// The largest |d|².
+    square: f64,
+    /// The largest |d|² + |w_v - w_p|.
+    size: f64,
+}
 
 #[inline]
 fn test<const WEIGHTED: bool>(cell: [&Site; 4], p: &Site, counts: &mut Counts) -> bool {
-    let d = cell.map(|v| [v[0] - p[0], v[1] - p[1], v[2] - p[2]]);
-    let mut lift = [0.0; 4];
-    let mut size = 0.0f64;
+    let mut rows = Rows {
+        d: [[0.0; 3]; 4],
+        lift: [0.0; 4],
+        square: 0.0,
+        size: 0.0,
+    };
     for k in 0..4 {
-        let square = d[k][0] * d[k][0] + d[k][1] * d[k][1] + d[k][2] * d[k][2];
+        let v = cell[k];
+        let d = [v[0] - p[0], v[1] - p[1], v[2] - p[2]];
+        let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        rows.d[k] = d;
+        rows.square = rows.square.max(square);
         if WEIGHTED {
-            let gain = cell[k][3] - p[3];
-            lift[k] = square - gain;
-            size = size.max(square + gain.abs());
+            let gain = v[3] - p[3];
+            rows.lift[k] = square - gain;
+            rows.size = rows.size.max(square + gain.abs());
         } else {
-            lift[k] = square;
-            size = size.max(square);
+            rows.lift[k] = square;
+            rows.size = rows.square;
         }
     }
-    let [a, b, c, e] = d;
+    let [a, b, c, e] = rows.d;
     let ab = a[0] * b[1] - b[0] * a[1];
     let bc = b[0] * c[1] - c[0] * b[1];
     let ce = c[0] * e[1] - e[0] * c[1];
@@ -57,18 +79,36 @@ fn test<const WEIGHTED: bool>(cell: [&Site; 4], p: &Site, counts: &mut Counts) -
     let cea = c[2] * ea + e[2] * ac + a[2] * ce;
     let eab = e[2] * ab + a[2] * be + b[2] * ea;
     // Q·V: minus the determinant expanded along the lifted column.
-    let value = (lift[0] * bce - lift[1] * cea) + (lift[2] * eab - lift[3] * abc);
-    let largest = |k: usize| a[k].abs().max(b[k].abs()).max(c[k].abs().max(e[k].abs()));
-    let bound = FILTER * largest(0) * largest(1) * largest(2) * size;
-    if value > bound {
+    let [la, lb, lc, le] = rows.lift;
+    let value = (la * bce - lb * cea) + (lc * eab - le * abc);
+    // The three largest differences are each at most the root of the largest
+    // square: a bound without roots and without looking at each.
+    let bound_sq =
+        (FILTER * FILTER) * (rows.square * rows.size) * (rows.square * rows.size) * rows.square;
+    if value * value > bound_sq {
         counts.sphere_filter += 1;
-        return true;
+        return value > 0.0;
     }
-    if value < -bound {
+    undecided::<WEIGHTED>(&rows, value, cell, p, counts)
+}
+
+/// The stages after the first bound: the bound along the axes, integers,
+/// perturbation.
+#[inline(never)]
+fn undecided<const WEIGHTED: bool>(
+    rows: &Rows,
+    value: f64,
+    cell: [&Site; 4],
+    p: &Site,
+    counts: &mut Counts,
+) -> bool {
+    let largest = |k: usize| rows.d.iter().fold(0.0f64, |m, d| m.max(d[k].abs()));
+    let bound = FILTER * largest(0) * largest(1) * largest(2) * rows.size;
+    if value.abs() > bound {
         counts.sphere_filter += 1;
-        return false;
+        return value > 0.0;
     }
-    match exact::<WEIGHTED>(&d, cell, p) {
+    match exact::<WEIGHTED>(&rows.d, cell, p) {
         Sign::Zero => {
             counts.sphere_perturbed += 1;
             perturbed(cell, p, counts)
@@ -80,35 +120,70 @@ fn test<const WEIGHTED: bool>(cell: [&Site; 4], p: &Site, counts: &mut Counts) -
     }
 }
 
-/// The same determinant in integers, as narrow as the differences allow.
-#[inline(never)]
-fn exact<const WEIGHTED: bool>(d: &[[f64; 3]; 4], cell: [&Site; 4], p: &Site) -> Sign {
-    let [a, b, c, e] = d.map(|row| row.map(|v| v as i128));
-    let mut lift = [0i128; 4];
-    let mut highest = 0;
-    let mut widest = 0;
-    for (k, row) in [a, b, c, e].iter().enumerate() {
-        lift[k] = row[0] * row[0] + row[1] * row[1] + row[2] * row[2];
-        if WEIGHTED {
-            lift[k] -= cell[k][3] as i128 - p[3] as i128;
-        }
-        highest |= lift[k].unsigned_abs();
-        widest |= (row[0].unsigned_abs() | row[1].unsigned_abs()) | row[2].unsigned_abs();
+/// The product of two integers of 64 bits.
+#[inline]
+fn mul(a: i64, b: i64) -> i128 {
+    i128::from(a) * i128::from(b)
+}
+
+/// An integer held in a float.
+#[inline]
+fn whole(v: f64) -> i128 {
+    const NARROW: f64 = 9e18;
+    if v.abs() < NARROW {
+        i128::from(v as i64)
+    } else {
+        v as i128
     }
-    let bits = 128 - widest.leading_zeros();
-    let lift_bits = 128 - highest.leading_zeros();
-    let ab = a[0] * b[1] - b[0] * a[1];
-    let bc = b[0] * c[1] - c[0] * b[1];
-    let ce = c[0] * e[1] - e[0] * c[1];
-    let ea = e[0] * a[1] - a[0] * e[1];
-    let ac = a[0] * c[1] - c[0] * a[1];
-    let be = b[0] * e[1] - e[0] * b[1];
+}
+
+/// The same determinant in integers, as narrow as the differences allow.
+fn exact<const WEIGHTED: bool>(d: &[[f64; 3]; 4], cell: [&Site; 4], p: &Site) -> Sign {
+    let mut rows = [[0i64; 3]; 4];
+    let mut gains = [0i128; 4];
+    let (mut wide, mut gain) = (0, 0);
+    for k in 0..4 {
+        let row = [d[k][0] as i64, d[k][1] as i64, d[k][2] as i64];
+        wide |= row[0].unsigned_abs() | row[1].unsigned_abs() | row[2].unsigned_abs();
+        rows[k] = row;
+        if WEIGHTED {
+            gains[k] = whole(cell[k][3]) - whole(p[3]);
+            gain |= gains[k].unsigned_abs();
+        }
+    }
+    // Coordinates on a coarse grid, as integers and short decimals are, are
+    // multiples of a power of two.
+    let zeros = wide.trailing_zeros().min(gain.trailing_zeros() / 2).min(63);
+    let bits = (64 - wide.leading_zeros()).saturating_sub(zeros);
+    let mut lift = [0i128; 4];
+    let mut high = 0;
+    for k in 0..4 {
+        let row = rows[k].map(|v| v >> zeros);
+        lift[k] = mul(row[0], row[0]) + mul(row[1], row[1]) + mul(row[2], row[2]);
+        if WEIGHTED {
+            lift[k] -= gains[k] >> (2 * zeros);
+        }
+        high |= lift[k].unsigned_abs();
+        rows[k] = row;
+    }
+    let lift_bits = 128 - high.leading_zeros();
+    if 3 * bits + 3 + lift_bits + 2 <= 63 {
+        return narrow(&rows, lift.map(|v| v as i64));
+    }
+    let [a, b, c, e] = rows;
+    let ab = mul(a[0], b[1]) - mul(b[0], a[1]);
+    let bc = mul(b[0], c[1]) - mul(c[0], b[1]);
+    let ce = mul(c[0], e[1]) - mul(e[0], c[1]);
+    let ea = mul(e[0], a[1]) - mul(a[0], e[1]);
+    let ac = mul(a[0], c[1]) - mul(c[0], a[1]);
+    let be = mul(b[0], e[1]) - mul(e[0], b[1]);
+    let [az, bz, cz, ez] = [a[2], b[2], c[2], e[2]].map(i128::from);
     if bits <= 41 {
         // A minor is a sum of six products: 3 * 41 + 3 bits.
-        let abc = a[2] * bc - b[2] * ac + c[2] * ab;
-        let bce = b[2] * ce - c[2] * be + e[2] * bc;
-        let cea = c[2] * ea + e[2] * ac + a[2] * ce;
-        let eab = e[2] * ab + a[2] * be + b[2] * ea;
+        let abc = az * bc - bz * ac + cz * ab;
+        let bce = bz * ce - cz * be + ez * bc;
+        let cea = cz * ea + ez * ac + az * ce;
+        let eab = ez * ab + az * be + bz * ea;
         if 3 * bits + 3 + lift_bits + 2 <= 126 {
             let value = (lift[0] * bce - lift[1] * cea) + (lift[2] * eab - lift[3] * abc);
             return Sign::of(value);
@@ -124,15 +199,32 @@ fn exact<const WEIGHTED: bool>(d: &[[f64; 3]; 4], cell: [&Site; 4], p: &Site) ->
             .plus(Wide::product(y.0, y.1))
             .plus(Wide::product(z.0, z.1))
     };
-    let abc = minor((bc, a[2]), (ac, -b[2]), (ab, c[2]));
-    let bce = minor((ce, b[2]), (be, -c[2]), (bc, e[2]));
-    let cea = minor((ea, c[2]), (ac, e[2]), (ce, a[2]));
-    let eab = minor((ab, e[2]), (be, a[2]), (ea, b[2]));
+    let abc = minor((bc, az), (ac, -bz), (ab, cz));
+    let bce = minor((ce, bz), (be, -cz), (bc, ez));
+    let cea = minor((ea, cz), (ac, ez), (ce, az));
+    let eab = minor((ab, ez), (be, az), (ea, bz));
     bce.times(lift[0])
         .minus(cea.times(lift[1]))
         .plus(eab.times(lift[2]))
         .minus(abc.times(lift[3]))
         .sign()
+}
+
+/// The determinant where 64 bits hold it.
+fn narrow(rows: &[[i64; 3]; 4], lift: [i64; 4]) -> Sign {
+    let [a, b, c, e] = rows;
+    let ab = a[0] * b[1] - b[0] * a[1];
+    let bc = b[0] * c[1] - c[0] * b[1];
+    let ce = c[0] * e[1] - e[0] * c[1];
+    let ea = e[0] * a[1] - a[0] * e[1];
+    let ac = a[0] * c[1] - c[0] * a[1];
+    let be = b[0] * e[1] - e[0] * b[1];
+    let abc = a[2] * bc - b[2] * ac + c[2] * ab;
+    let bce = b[2] * ce - c[2] * be + e[2] * bc;
+    let cea = c[2] * ea + e[2] * ac + a[2] * ce;
+    let eab = e[2] * ab + a[2] * be + b[2] * ea;
+    let value = (lift[0] * bce - lift[1] * cea) + (lift[2] * eab - lift[3] * abc);
+    Sign::of(i128::from(value))
 }
 
 /// The sign of `Q` when every weight is raised by an infinitesimal, a later
@@ -142,18 +234,19 @@ fn exact<const WEIGHTED: bool>(d: &[[f64; 3]; 4], cell: [&Site; 4], p: &Site) ->
 #[cold]
 #[inline(never)]
 fn perturbed(cell: [&Site; 4], p: &Site, counts: &mut Counts) -> bool {
-    let mut order = [0usize, 1, 2, 3, 4];
     let site = |k: usize| if k == 4 { p } else { cell[k] };
-    order.sort_unstable_by(|&i, &j| {
-        if precedes(site(i), site(j)) {
-            std::cmp::Ordering::Greater
-        } else if precedes(site(j), site(i)) {
-            std::cmp::Ordering::Less
-        } else {
-            std::cmp::Ordering::Equal
+    let mut rest = [0usize, 1, 2, 3, 4];
+    for len in (1..=5).rev() {
+        // The last in the order among those not yet asked, of equals a corner.
+        let mut last = 0;
+        for k in 1..len {
+            let (a, b) = (rest[last], rest[k]);
+            if precedes(site(a), site(b)) || (a == 4 && !precedes(site(b), site(a))) {
+                last = k;
+            }
         }
-    });
-    for k in order {
+        let k = rest[last];
+        rest.swap(last, len - 1);
         if k == 4 {
             return true;
         }
@@ -244,6 +337,13 @@ mod tests {
         #[test]
         fn agrees_with_the_plain_determinant(p in prop::array::uniform5(site(4, 20))) {
             compare(p)?;
+        }
+
+        #[test]
+        fn agrees_on_coarse_grids(p in prop::array::uniform5(site(40, 1600)), zeros in 0..40) {
+            let unit = 2f64.powi(zeros);
+            compare(p.map(|s| [s[0] * unit, s[1] * unit, s[2] * unit, s[3] * unit * unit]))?;
+            compare(p.map(|s| [s[0] * unit, s[1] * unit, s[2] * unit, s[3]]))?;
         }
 
         #[test]

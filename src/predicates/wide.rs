@@ -16,7 +16,20 @@ impl Wide {
     /// The full product of two 128-bit integers.
     #[inline]
     pub fn product(a: i128, b: i128) -> Wide {
-        Wide::from(a).times(b)
+        let (x, y) = (a.unsigned_abs(), b.unsigned_abs());
+        let [x0, x1] = [x as u64, (x >> 64) as u64].map(u128::from);
+        let [y0, y1] = [y as u64, (y >> 64) as u64].map(u128::from);
+        let low = x0 * y0;
+        // None of these sums can carry beyond 128 bits.
+        let middle = x1 * y0 + (low >> 64);
+        let other = x0 * y1 + (middle & u128::from(u64::MAX));
+        let high = x1 * y1 + (middle >> 64) + (other >> 64);
+        let out = Wide([low as u64, other as u64, high as u64, (high >> 64) as u64]);
+        if (a < 0) != (b < 0) {
+            out.negated()
+        } else {
+            out
+        }
     }
 
     /// `self * b`, modulo 2^256.

@@ -1,16 +1,42 @@
-//! Incremental construction: walk to the site, replace what conflicts.
+//! Incremental construction in passes, each on as many threads as pay.
+//!
+//! Sites are inserted in rounds of growing size, each along the curve
+//! (BRIO: [`super::order`]). Small rounds take one thread. A large round is a
+//! **pass** of all threads: the curve is cut into stretches of equally many
+//! sites, one for each thread, which leaves for later
+//! what would touch the cells another one holds ([`super::region`]). What was left joins the
+//! next round; after the last, further passes take most of it, and
+//! one thread the rest. The triangulation is unique and its cells are
+//! numbered by what they are ([`super::number`]), so nothing of this shows.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
-use super::cavity::Workspace;
-use super::complex::{unpack, Complex, MOST_CELLS, NONE};
+use rayon::prelude::*;
+
+use super::cavity::{Outcome, Worker};
+use super::complex::{Complex, MOST_CELLS, NONE};
+use super::number::number;
+use super::order;
+use super::region::{Hold, Regions};
+use super::store::{Cell, Store};
+use super::walk::walk;
 use super::{frame, Conflict};
-use crate::context::{Context, Stage};
+use crate::context::{Cancelled, Context, Stage};
 use crate::error::Error;
-use crate::predicates::{orient, Counts, Sign, Site};
+use crate::predicates::{Counts, Site};
 
 /// Sites inserted between two reports of progress.
-const REPORT: u32 = 4096;
+const REPORT: usize = 4096;
+
+/// Sites to come for each thread from which a pass is shared.
+const SHARE: usize = 2048;
+
+/// Slots for each thread beyond those that its sites should take.
+const SLACK: usize = 1024;
+
+/// Walks on which a thread looks for a cell to start from.
+const TRIES: usize = 8;
 
 /// A finished triangulation.
 #[derive(Clone, Debug, Default)]
@@ -24,8 +50,8 @@ pub struct Triangulation {
 }
 
 /// Triangulates the sites `0..count` of `test` inside the frame of the sites
-/// `count..count + 8`. Sites are inserted in the order of their ids: number
-/// them along a space-filling curve ([`super::order`]).
+/// `count..count + 8`. Any numbering gives the same cells; number the sites
+/// along a space-filling curve ([`super::order`]) for speed.
 ///
 /// # Errors
 /// [`Error::Cancelled`], and [`Error::TooLarge`] beyond [`super::MOST_CELLS`]
@@ -37,22 +63,39 @@ pub fn triangulate<C: Conflict>(
     stage: Stage,
     context: &Context,
 ) -> Result<Triangulation, Error> {
-    grow(test, count, MOST_CELLS, stage, context)
+    grow(test, count, MOST_CELLS, SHARE, stage, context)
 }
 
-/// [`triangulate`] within a number of cells.
+/// [`triangulate`] within a number of cells, sharing passes of so many sites
+/// a thread.
 fn grow<C: Conflict>(
     test: &C,
     count: u32,
     most: usize,
+    share: usize,
     stage: Stage,
     context: &Context,
 ) -> Result<Triangulation, Error> {
     let mut counts = Counts::default();
     let start = frame::frame(test, count, &mut counts);
-    let mut work = Workspace::new(count as usize + 8, start.cells, start.neighbours);
-    work.most = most;
-    insert(test, work, 0..count, counts, stage, context)
+    let mut growth = Growth::new(test, &start, most, count, stage, context);
+    let threads = rayon::current_num_threads();
+    let shared = |sites: &[u32]| threads > 1 && sites.len() >= share * threads;
+    let mut left = Vec::new();
+    for round in by_round(&test.sites()[..count as usize]) {
+        left.extend(round);
+        let sites = std::mem::take(&mut left);
+        if shared(&sites) {
+            left = growth.pass(sites, threads)?;
+        } else {
+            growth.alone(&sites)?;
+        }
+    }
+    while shared(&left) {
+        left = growth.pass(left, threads)?;
+    }
+    growth.alone(&left)?;
+    growth.finish(counts)
 }
 
 /// Inserts the sites `more` of `test` into a complex of other sites of it.
@@ -66,136 +109,271 @@ pub fn extend<C: Conflict>(
     stage: Stage,
     context: &Context,
 ) -> Result<Triangulation, Error> {
-    let work = Workspace::new(test.sites().len(), complex.cells, complex.neighbours);
-    insert(test, work, more, Counts::default(), stage, context)
+    let mut growth = Growth::new(
+        test,
+        &complex,
+        MOST_CELLS,
+        more.len() as u32,
+        stage,
+        context,
+    );
+    drop(complex);
+    growth.alone(&more.collect::<Vec<u32>>())?;
+    growth.finish(Counts::default())
 }
 
-fn insert<C: Conflict>(
+/// Ids by round, each round ascending.
+fn by_round(sites: &[Site]) -> Vec<Vec<u32>> {
+    let rounds = order::rounds(sites.len());
+    let of: Vec<u32> = sites.par_iter().map(|s| order::round(s, rounds)).collect();
+    let mut by_round = vec![Vec::new(); rounds as usize];
+    for (id, &round) in (0u32..).zip(&of) {
+        by_round[round as usize].push(id);
+    }
+    by_round
+}
+
+/// The state between passes.
+struct Growth<'a, C: Conflict> {
+    test: &'a C,
+    store: Store,
+    /// The first serves alone, too.
+    workers: Vec<Worker>,
+    /// A cell in use.
+    hint: u32,
+    /// Sites to insert.
+    count: u32,
+    report: Report<'a>,
+}
+
+impl<'a, C: Conflict> Growth<'a, C> {
+    fn new(
+        test: &'a C,
+        start: &Complex,
+        most: usize,
+        count: u32,
+        stage: Stage,
+        context: &'a Context,
+    ) -> Growth<'a, C> {
+        Growth {
+            test,
+            store: Store::of(start, most),
+            workers: vec![Worker::new(test.sites().len())],
+            hint: 0,
+            count,
+            report: Report {
+                done: AtomicU64::new(0),
+                total: u64::from(count),
+                stopped: AtomicBool::new(false),
+                stage,
+                context,
+            },
+        }
+    }
+
+    /// Inserts sites on one thread.
+    fn alone(&mut self, sites: &[u32]) -> Result<(), Error> {
+        let mut from = 0;
+        while from < sites.len() {
+            let worker = &mut self.workers[0];
+            worker.hint = self.hint;
+            worker.free = std::mem::take(&mut self.store.free);
+            let cells = &self.store.cells;
+            let regions = Regions::new(0);
+            let hold = &mut Hold::new(&regions, 0);
+            from += run::<C, false>(self.test, cells, worker, hold, &sites[from..], &self.report)?;
+            self.hint = worker.hint;
+            self.store.free = std::mem::take(&mut worker.free);
+            let wanted = std::mem::take(&mut worker.wanted);
+            if wanted > 0 {
+                // More than that if there may be more.
+                let _ = self.store.provide(self.store.cells.len() / 4);
+                self.store.provide(wanted)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Inserts sites on several threads; returns those left, at most half of
+    /// them.
+    fn pass(&mut self, mut sites: Vec<u32>, threads: usize) -> Result<Vec<u32>, Error> {
+        // Those left before come first: two runs.
+        sites.sort();
+        while self.workers.len() < threads {
+            self.workers.push(Worker::new(self.test.sites().len()));
+        }
+        // As many slots a site as up to now, and a quarter more.
+        let done = self.report.done.load(Relaxed).max(1) as usize;
+        let each = (self.store.live() / done + 1) * 5 / 4;
+        let _ = self.store.provide(sites.len() * each + threads * SLACK);
+        let share = self.store.free.len() / threads;
+        let regions = Regions::new(self.count);
+        let mut jobs = Vec::new();
+        for (k, worker) in self.workers.iter_mut().enumerate() {
+            let sites = &sites[sites.len() * k / threads..sites.len() * (k + 1) / threads];
+            let mut hold = Hold::new(&regions, k);
+            let (test, cells) = (self.test, &self.store.cells);
+            worker.hint = enter(test, cells, &mut hold, sites, &mut self.hint, worker);
+            let kept = self.store.free.len() - share;
+            worker.free = self.store.free.split_off(kept);
+            jobs.push((sites, worker, hold));
+        }
+        let (test, cells, report) = (self.test, &self.store.cells, &self.report);
+        let work = |(sites, worker, mut hold): (&[u32], &mut Worker, Hold)| {
+            let done = match worker.hint {
+                NONE => 0,
+                _ => run::<C, true>(test, cells, worker, &mut hold, sites, report)?,
+            };
+            worker.left.extend_from_slice(&sites[done..]);
+            // The others have moved on since.
+            let mut before = sites.len();
+            while !worker.left.is_empty() && worker.left.len() <= before / 2 && worker.wanted == 0 {
+                let again = std::mem::take(&mut worker.left);
+                let done = run::<C, true>(test, cells, worker, &mut hold, &again, report)?;
+                worker.left.extend_from_slice(&again[done..]);
+                before = again.len();
+            }
+            hold.release(&[]);
+            Ok(())
+        };
+        jobs.into_par_iter()
+            .with_max_len(1)
+            .map(work)
+            .collect::<Result<(), Cancelled>>()?;
+        let mut left = Vec::new();
+        for worker in &mut self.workers {
+            if worker.hint != NONE {
+                self.hint = worker.hint;
+            }
+            worker.wanted = 0;
+            left.append(&mut worker.left);
+            self.store.free.append(&mut worker.free);
+        }
+        if left.len() > sites.len() / 2 {
+            self.alone(&std::mem::take(&mut left))?;
+        }
+        Ok(left)
+    }
+
+    fn finish(mut self, mut counts: Counts) -> Result<Triangulation, Error> {
+        self.report.at_end()?;
+        let mut hidden = Vec::new();
+        for worker in &mut self.workers {
+            hidden.append(&mut worker.hidden);
+            counts += worker.counts;
+        }
+        hidden.sort_unstable();
+        drop(self.workers);
+        Ok(Triangulation {
+            complex: number(self.store, self.test.sites().len()),
+            hidden,
+            counts,
+        })
+    }
+}
+
+/// A cell for a worker to start from, with the regions of its vertices, or
+/// [`NONE`]. Moves the hint to where the search ended.
+fn enter<C: Conflict>(
     test: &C,
-    mut work: Workspace,
-    sites: Range<u32>,
-    mut counts: Counts,
-    stage: Stage,
-    context: &Context,
-) -> Result<Triangulation, Error> {
-    let (first, total) = (sites.start, sites.len() as u64);
-    let mut hint = 0;
-    for p in sites {
-        if (p - first).is_multiple_of(REPORT) {
-            context.advance(stage, (p - first) as u64, total)?;
-        }
-        let site = &test.sites()[p as usize];
-        let cell = walk(
+    cells: &[Cell],
+    hold: &mut Hold,
+    sites: &[u32],
+    hint: &mut u32,
+    worker: &mut Worker,
+) -> u32 {
+    for &p in sites.iter().step_by(sites.len() / TRIES + 1) {
+        let found = walk(
             test.sites(),
-            &work.cells,
-            &work.neighbours,
-            hint,
-            site,
-            &mut counts,
+            &test.sites()[p as usize],
+            *hint,
+            |c| cells[c as usize].vertices(),
+            |c, i| cells[c as usize].neighbour(i),
+            |_, _, _| true,
+            &mut worker.counts,
         );
-        hint = work.insert(test, p, cell, &mut counts)?.unwrap_or(cell);
+        let (Ok(cell) | Err(cell)) = found;
+        *hint = cell;
+        if cells[cell as usize]
+            .vertices()
+            .iter()
+            .all(|&v| hold.take(v))
+        {
+            return cell;
+        }
+        hold.release(&[]);
     }
-    context.advance(stage, total, total)?;
-    let mut hidden = std::mem::take(&mut work.hidden);
-    hidden.sort_unstable();
-    Ok(Triangulation {
-        complex: compact(work),
-        hidden,
-        counts,
-    })
+    NONE
 }
 
-/// The cell of a complex that holds a site (its boundary included); the site
-/// must lie inside the frame.
-pub fn locate(
-    complex: &Complex,
-    sites: &[Site],
-    site: &Site,
-    hint: u32,
-    counts: &mut Counts,
-) -> u32 {
-    walk(
-        sites,
-        &complex.cells,
-        &complex.neighbours,
-        hint,
-        site,
-        counts,
-    )
+/// Inserts sites one after the other; returns how many it came to before it
+/// wanted more slots.
+fn run<C: Conflict, const SHARED: bool>(
+    test: &C,
+    cells: &[Cell],
+    worker: &mut Worker,
+    hold: &mut Hold,
+    sites: &[u32],
+    report: &Report,
+) -> Result<usize, Cancelled> {
+    let mut dealt_with = 0;
+    for (k, &p) in sites.iter().enumerate() {
+        if k.is_multiple_of(REPORT) {
+            report.add(std::mem::take(&mut dealt_with))?;
+        }
+        let next = sites.get(k + 1).copied().unwrap_or(p);
+        let outcome = worker.insert::<C, SHARED>(test, cells, hold, p, next);
+        let needed = |worker: &Worker| cells[worker.hint as usize].vertices();
+        match outcome {
+            Outcome::Placed | Outcome::Hidden => {
+                dealt_with += 1;
+                if SHARED {
+                    hold.release_many(|| needed(worker));
+                }
+            }
+            Outcome::GivenUp => {
+                worker.left.push(p);
+                hold.release(&needed(worker));
+                // Whoever holds the region may wait for this very core.
+                std::thread::yield_now();
+            }
+            Outcome::Starved(wanted) => {
+                worker.wanted = wanted;
+                report.add(dealt_with)?;
+                return Ok(k);
+            }
+        }
+    }
+    report.add(dealt_with)?;
+    Ok(sites.len())
 }
 
-/// The visibility walk: cross any facet that separates the site from the
-/// cell. In a regular triangulation, with exact signs, it cannot go round in
-/// circles (Edelsbrunner 1990).
-#[inline]
-fn walk(
-    sites: &[Site],
-    cells: &[[u32; 4]],
-    neighbours: &[[u32; 4]],
-    hint: u32,
-    site: &Site,
-    counts: &mut Counts,
-) -> u32 {
-    let mut at = hint;
-    let mut from = NONE;
-    'cell: loop {
-        let corners = cells[at as usize].map(|v| &sites[v as usize]);
-        let behind = neighbours[at as usize];
-        for i in 0..4 {
-            let next = behind[i];
-            if next == NONE || next >> 2 == from {
-                continue;
-            }
-            let mut c = corners;
-            c[i] = site;
-            if orient(c[0], c[1], c[2], c[3], counts) == Sign::Negative {
-                from = at;
-                at = unpack(next).0;
-                continue 'cell;
-            }
-        }
-        return at;
-    }
+/// Progress of all threads together.
+struct Report<'a> {
+    done: AtomicU64,
+    total: u64,
+    stopped: AtomicBool,
+    stage: Stage,
+    context: &'a Context<'a>,
 }
 
-/// Drops unused cell slots.
-fn compact(work: Workspace) -> Complex {
-    let mut dead = vec![false; work.cells.len()];
-    for &c in work.free_slots() {
-        dead[c as usize] = true;
-    }
-    let mut renumbered = vec![NONE; work.cells.len()];
-    let mut live = 0;
-    for (c, &gone) in dead.iter().enumerate() {
-        if !gone {
-            renumbered[c] = live;
-            live += 1;
+impl Report<'_> {
+    /// So many sites more; an error once anyone has been told to stop.
+    fn add(&self, sites: u64) -> Result<(), Cancelled> {
+        let done = self.done.fetch_add(sites, Relaxed) + sites;
+        let told = self.context.advance(self.stage, done, self.total);
+        if told.is_err() {
+            self.stopped.store(true, Relaxed);
         }
-    }
-    let Workspace {
-        mut cells,
-        mut neighbours,
-        ..
-    } = work;
-    for c in 0..cells.len() {
-        if dead[c] {
-            continue;
+        if self.stopped.load(Relaxed) {
+            return Err(Cancelled);
         }
-        let to = renumbered[c] as usize;
-        cells[to] = cells[c];
-        neighbours[to] = neighbours[c].map(|packed| {
-            if packed == NONE {
-                NONE
-            } else {
-                renumbered[(packed >> 2) as usize] << 2 | (packed & 3)
-            }
-        });
+        Ok(())
     }
-    cells.truncate(live as usize);
-    neighbours.truncate(live as usize);
-    cells.shrink_to_fit();
-    neighbours.shrink_to_fit();
-    Complex { cells, neighbours }
+
+    fn at_end(&self) -> Result<(), Cancelled> {
+        self.context.advance(self.stage, self.total, self.total)
+    }
 }
 
 #[cfg(test)]
@@ -218,7 +396,7 @@ mod tests {
     fn within(sites: &[Site], most: usize) -> Result<Triangulation, Error> {
         let count = sites.len() as u32 - 8;
         let (stage, context) = (Stage::Delaunay, Context::default());
-        grow(&InSphere(sites), count, most, stage, &context)
+        grow(&InSphere(sites), count, most, SHARE, stage, &context)
     }
 
     #[test]
@@ -244,7 +422,7 @@ mod tests {
     #[test]
     fn the_last_facet_fits_and_is_no_sentinel() {
         let last = super::super::pack(MOST_CELLS as u32 - 1, 3);
-        assert_eq!(unpack(last), (MOST_CELLS as u32 - 1, 3));
+        assert_eq!(super::super::unpack(last), (MOST_CELLS as u32 - 1, 3));
         assert!(last < NONE);
     }
 

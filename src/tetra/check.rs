@@ -9,8 +9,8 @@
 //! 4. Every site has a cell or is listed as hidden, not both; a hidden site
 //!    does not conflict with the cell it lies in. The frame is never hidden.
 
-use super::build::locate;
 use super::complex::{unpack, Complex, NONE};
+use super::walk::locate;
 use super::Conflict;
 use crate::predicates::{Counts, Sign};
 

@@ -14,11 +14,16 @@ mod cavity;
 mod check;
 mod complex;
 mod frame;
+mod number;
 pub mod order;
+mod region;
+mod store;
+mod walk;
 
-pub use build::{extend, locate, triangulate, Triangulation};
+pub use build::{extend, triangulate, Triangulation};
 pub use check::{check, Finding};
 pub use complex::{facet_of, pack, unpack, Complex, FACETS, MOST_CELLS, NONE};
+pub use walk::locate;
 
 use crate::predicates::{conflict, conflict_weighted, orient, Counts, Sign, Site};
 
@@ -55,11 +60,7 @@ impl Conflict for InSphere<'_> {
     }
     #[inline]
     fn conflicts(&self, cell: [u32; 4], p: u32, counts: &mut Counts) -> bool {
-        conflict(
-            cell.map(|v| &self.0[v as usize]),
-            &self.0[p as usize],
-            counts,
-        )
+        conflict(corners(self.0, cell), &self.0[p as usize], counts)
     }
 }
 
@@ -74,10 +75,18 @@ impl Conflict for InPower<'_> {
     }
     #[inline]
     fn conflicts(&self, cell: [u32; 4], p: u32, counts: &mut Counts) -> bool {
-        conflict_weighted(
-            cell.map(|v| &self.0[v as usize]),
-            &self.0[p as usize],
-            counts,
-        )
+        conflict_weighted(corners(self.0, cell), &self.0[p as usize], counts)
     }
+}
+
+/// The sites of a cell.
+#[inline]
+fn corners(sites: &[Site], cell: [u32; 4]) -> [&Site; 4] {
+    let [a, b, c, d] = cell;
+    [
+        &sites[a as usize],
+        &sites[b as usize],
+        &sites[c as usize],
+        &sites[d as usize],
+    ]
 }

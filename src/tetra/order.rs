@@ -1,13 +1,18 @@
-//! The order of insertion: rounds of doubling size (BRIO: Amenta, Choi, Rote
+//! The order of insertion: rounds of growing size (BRIO: Amenta, Choi, Rote
 //! 2003), each along a Hilbert curve.
 //!
-//! The round of a site is drawn from a hash of its coordinates, so the order,
-//! and with it every id given along it, depends on the set of sites alone and
-//! not on the order of the input. There is no seed to choose: by the
+//! Sites get their ids along the curve, so what is near in space is near in
+//! memory. The round of a site is drawn from a hash of its coordinates.
+//! There is no seed to choose: by the
 //! uniqueness of the perturbed triangulation the order cannot change the result, only the time.
+//! A round is eight times as large as the one before, not twice: that sweeps
+//! the memory less often.
 
 /// Bits of a coordinate in a Hilbert key.
 const BITS: u32 = 21;
+
+/// log2 of how many times larger each round is than the one before.
+const RATIO: u32 = 3;
 
 /// Place along a Hilbert curve through the cube of side `2^BITS` (Skilling
 /// 2004: transposed axes, then bits interleaved).
@@ -55,21 +60,24 @@ pub fn key(site: &[f64; 4], half: f64) -> u64 {
     hilbert([0, 1, 2].map(|k| ((site[k] + half) * scale).clamp(0.0, top) as u32))
 }
 
-/// The round of a site among `rounds`, the last holding about half of all
-/// sites, the one before a quarter, and so on.
+/// The round of a site among `rounds`, the last holding about seven eighths of
+/// all sites, the one before an eighth of that, and so on.
 pub fn round(site: &[f64; 4], rounds: u32) -> u32 {
     let mut h = 0u64;
     for v in site {
         h = mix(h ^ v.to_bits());
     }
-    let back = h.trailing_ones().min(rounds - 1);
+    let back = (h.trailing_ones() / RATIO).min(rounds - 1);
     rounds - 1 - back
 }
 
 /// Rounds worth having for so many sites: below a few hundred sites a round
 /// gains nothing.
 pub fn rounds(count: usize) -> u32 {
-    ((count.max(1) as f64 / 256.0).log2().ceil().max(0.0)) as u32 + 1
+    ((count.max(1) as f64 / 256.0).log2() / f64::from(RATIO))
+        .ceil()
+        .max(0.0) as u32
+        + 1
 }
 
 /// The finaliser of splitmix64.
@@ -103,15 +111,18 @@ mod tests {
     }
 
     #[test]
-    fn rounds_halve() {
-        let mut sizes = [0usize; 6];
+    fn each_round_is_eight_times_the_one_before() {
+        let mut sizes = [0usize; 3];
         for k in 0..32_000 {
-            sizes[round(&[k as f64, 0.0, 0.0, 0.0], 6) as usize] += 1;
+            sizes[round(&[k as f64, 0.0, 0.0, 0.0], 3) as usize] += 1;
         }
-        assert!((sizes[5] as f64 / 32_000.0 - 0.5).abs() < 0.02, "{sizes:?}");
-        assert!(
-            (sizes[4] as f64 / 32_000.0 - 0.25).abs() < 0.02,
-            "{sizes:?}"
-        );
+        let share = |k: usize, wanted: f64| (sizes[k] as f64 / 32_000.0 - wanted).abs() < 0.01;
+        let last = 7.0 / 8.0;
+        assert!(share(2, last) && share(1, last / 8.0), "{sizes:?}");
+    }
+
+    #[test]
+    fn few_sites_are_one_round() {
+        assert_eq!([1, 256, 257, 2048, 2049].map(rounds), [1, 1, 2, 2, 3]);
     }
 }

@@ -103,15 +103,16 @@ fn the_lattice_and_back_is_within_half_a_step() {
     }
 }
 
-/// Rounds are a part of the order of insertion: early ones small.
+/// Ids follow the curve: what is near in space is near in memory.
 #[test]
-fn samples_come_in_rounds() {
+fn samples_follow_the_curve() {
     let s = made(&shapes::UNIT_SPHERE.samples(3_000, 13));
-    let rounds = order::rounds(s.len());
-    assert_eq!(rounds, 5);
-    let of: Vec<u32> = s.sites.iter().map(|p| order::round(p, rounds)).collect();
-    assert!(of.windows(2).all(|two| two[0] <= two[1]));
-    assert!(of[0] == 0 && of[s.len() - 1] == rounds - 1);
+    let keys: Vec<u64> = s
+        .sites
+        .iter()
+        .map(|p| order::key(p, s.lattice.sample_half))
+        .collect();
+    assert!(keys.windows(2).all(|two| two[0] <= two[1]));
 }
 
 #[track_caller]

@@ -215,6 +215,82 @@ fn the_order_of_insertion_does_not_matter() {
     }
 }
 
+/// Larger sets than the definition can judge, with a curve through them, for
+/// several threads to share: random, on a grid, on a sphere, on two lines that are
+/// not shared well, and balls of which many are hidden.
+fn shared() -> Vec<(&'static str, Vec<Site>)> {
+    let mut random = Random::new(9);
+    let ball = |mut s: Site, random: &mut Random| {
+        s[3] = random.below(6_000) as f64;
+        s
+    };
+    let cloud = sites::random(60_000, 900, &mut random);
+    let balls = cloud.iter().map(|&s| ball(s, &mut random)).collect();
+    let mut families = vec![
+        ("random", cloud),
+        ("grid", sites::grid(34)),
+        ("sphere", sites::sphere(801 * 801)),
+        ("lines", sites::skew_lines(300)),
+        ("balls", balls),
+    ];
+    for (_, sites) in &mut families {
+        sites.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        sites.dedup_by(|a, b| a[..3] == b[..3]);
+        sites.sort_by_key(|s| tetra::order::key(s, HALF));
+    }
+    families
+}
+
+#[test]
+fn the_number_of_threads_does_not_matter() {
+    for (name, sites) in shared() {
+        let mut all = sites.clone();
+        all.extend(framed(&[]));
+        let mut one: Option<Triangulation> = None;
+        for threads in [1, 2, 3, 8] {
+            let made = crate::common::threads(threads).install(|| match name {
+                "balls" => regular(&all),
+                _ => delaunay(&all),
+            });
+            match &one {
+                None => {
+                    if name == "balls" {
+                        assert!(made.hidden.len() > 1_000, "{}", made.hidden.len());
+                        assert_eq!(
+                            tetra::check(&made.complex, &made.hidden, &InPower(&all)),
+                            []
+                        );
+                    } else {
+                        assert_eq!(tetra::check(&made.complex, &[], &InSphere(&all)), []);
+                    }
+                    one = Some(made);
+                }
+                Some(one) => {
+                    assert!(made.complex.cells == one.complex.cells, "{name}, {threads}");
+                    assert!(
+                        made.complex.neighbours == one.complex.neighbours,
+                        "{name}, {threads}"
+                    );
+                    assert_eq!(made.hidden, one.hidden, "{name}, {threads}");
+                }
+            }
+        }
+    }
+}
+
+/// Cells are numbered by what they are.
+#[test]
+fn cells_and_corners_ascend() {
+    let all = framed(&sites::random(300, 500, &mut Random::new(10)));
+    let cells = delaunay(&all).complex.cells;
+    let mut sorted: Vec<[u32; 4]> = cells.clone();
+    for (cell, ascending) in cells.iter().zip(&mut sorted) {
+        ascending.sort_unstable();
+        assert_eq!(cell[..2], ascending[..2]);
+    }
+    assert!(sorted.is_sorted());
+}
+
 fn sites_of(all: &[Site], ids: &[u32]) -> BTreeSet<Whole> {
     ids.iter()
         .map(|&v| exact::whole(&all[v as usize]))
