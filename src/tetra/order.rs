@@ -5,8 +5,8 @@
 //! memory. The round of a site is drawn from a hash of its coordinates.
 //! There is no seed to choose: by the
 //! uniqueness of the perturbed triangulation the order cannot change the result, only the time.
-//! A round eight times as large as the one before, not twice, sweeps the
-//! memory less often: 15 % less time on 100,000 samples.
+//! A round is eight times as large as the one before, not twice: that sweeps
+//! the memory less often.
 
 /// Bits of a coordinate in a Hilbert key.
 const BITS: u32 = 21;
