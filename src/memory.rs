@@ -25,7 +25,7 @@ pub struct Estimate {
 /// points.
 ///
 /// 3.2 KB a point and 6 MB for the process, by measurements on clouds of 5,000
-/// to 360,000 points, which it meets within a quarter. Points that repeat
+/// to 360,000 points, which it meets within a quarter, but for spheres and grids. Points that repeat
 /// others, or crowd where they say nothing new, take less. Time depends on the
 /// machine and on the scan by a factor of three.
 ///
