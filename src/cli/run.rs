@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
 use powercrust::memory::{estimate, of_machine, Estimate};
+use powercrust::tetra::Complex;
 use powercrust::{Bounds, Context, Error, Options, Point, Reconstruction, SampleError};
 use serde_json::json;
 
@@ -73,6 +74,10 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     let outcome = outcome
         .map_err(|error| unsolved(plan, error))
         .and_then(|mut result| {
+            // Only medial axes are made of the cells.
+            if plan.inner_axis.is_none() && plan.outer_axis.is_none() {
+                result.power.complex = Complex::default();
+            }
             let product = product::make(plan, &cloud, &mut result, &context)?;
             let report = Report::new(plan, &result, &product, cloud.report, &context)
                 .map_err(|_| Failure::interrupted())?;
