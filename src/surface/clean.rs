@@ -69,9 +69,10 @@ pub(crate) fn clean_counted(raw: RawCrust, options: &CleanOptions) -> (Crust, us
         }
     }
     let mut fans = Fans::of(&surface, places.positions.len());
-    if !fans.odd.is_empty() {
-        remove_opposite_faces(&mut surface, &fans);
-        split_double_edges(&mut surface);
+    if remove_opposite_faces(&mut surface, &fans) > 0 {
+        fans = Fans::of(&surface, places.positions.len());
+    }
+    if split_double_edges(&mut surface, &fans) > 0 {
         fans = Fans::of(&surface, places.positions.len());
     }
     (finish(&surface, &places, fans, options.gap), count)

@@ -155,23 +155,4 @@ impl HalfEdges {
         }
         firsts
     }
-
-    /// The vertex at which each half-edge starts, numbered in the order of
-    /// their first half-edges, and how many there are.
-    pub fn fans(&self) -> (Vec<u32>, u32) {
-        let mut fan = vec![NONE; self.len()];
-        let mut count = 0;
-        for first in 0..self.len() as u32 {
-            if !self.alive(first) || fan[first as usize] != NONE {
-                continue;
-            }
-            let mut h = first;
-            while fan[h as usize] == NONE {
-                fan[h as usize] = count;
-                h = self.around(h);
-            }
-            count += 1;
-        }
-        (fan, count)
-    }
 }

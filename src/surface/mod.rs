@@ -38,4 +38,4 @@ pub use mend::{mend_crust, MendOptions, Mending};
 pub use raw::{Crust, RawCrust, NONE};
 pub use shape::{power_shape, PowerShape};
 pub use triangulate::triangulate;
-pub(crate) use triangulate::triangulate_from;
+pub(crate) use triangulate::{triangulate_faces, Triangles};

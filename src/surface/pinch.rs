@@ -106,21 +106,14 @@ pub(crate) fn remove_opposite_faces(surface: &mut HalfEdges, fans: &Fans) -> usi
     keys.sort_unstable();
     keys.dedup();
     let mut removed = 0;
-    let mut start = 0;
-    while start < keys.len() {
-        let mut end = start + 1;
-        while end < keys.len() && keys[end].0 == keys[start].0 {
-            end += 1;
-        }
-        for i in start..end {
-            for j in i + 1..end {
-                let (a, b) = (keys[i].1, keys[j].1);
+    for equal in keys.chunk_by(|a, b| a.0 == b.0) {
+        for (i, &(_, a)) in equal.iter().enumerate() {
+            for &(_, b) in &equal[i + 1..] {
                 if surface.alive(a) && surface.alive(b) && cancel(surface, a, b) {
                     removed += 1;
                 }
             }
         }
-        start = end;
     }
     removed
 }
@@ -182,55 +175,31 @@ fn cancel(surface: &mut HalfEdges, a: u32, b: u32) -> bool {
 }
 
 /// Makes every edge the only one between its vertices.
-pub(crate) fn split_double_edges(surface: &mut HalfEdges) -> usize {
-    let (fan, count) = surface.fans();
-    let mut doubles: Vec<(u64, u32)> = Vec::new();
-    let mut first_to = vec![NONE; count as usize];
-    let mut done = vec![false; count as usize];
-    for start in 0..surface.len() as u32 {
-        if !surface.alive(start) || done[fan[start as usize] as usize] {
-            continue;
+pub(crate) fn split_double_edges(surface: &mut HalfEdges, fans: &Fans) -> usize {
+    let fan = |h: u32| fans.fan[h as usize];
+    let mut odd = fans.odd.clone();
+    odd.sort_unstable();
+    odd.dedup();
+    // The vertices of each edge, and its half-edge from the lower one.
+    let mut edges: Vec<([u32; 2], u32)> = Vec::new();
+    for start in odd {
+        let mut h = start;
+        loop {
+            let ends = [fan(h), fan(surface.twin(h))];
+            if ends[0] < ends[1] {
+                edges.push((ends, h));
+            }
+            h = surface.around(h);
+            if h == start {
+                break;
+            }
         }
-        let from = fan[start as usize];
-        done[from as usize] = true;
-        let end = |h: u32| fan[surface.twin(h) as usize];
-        let each = |visit: &mut dyn FnMut(u32)| {
-            let mut h = start;
-            loop {
-                visit(h);
-                h = surface.around(h);
-                if h == start {
-                    break;
-                }
-            }
-        };
-        each(&mut |h| {
-            let to = end(h);
-            if from < to {
-                let key = u64::from(from) << 32 | u64::from(to);
-                let first = &mut first_to[to as usize];
-                if *first == NONE {
-                    *first = h;
-                } else {
-                    doubles.push((key, *first));
-                    doubles.push((key, h));
-                }
-            }
-        });
-        each(&mut |h| first_to[end(h) as usize] = NONE);
     }
-    doubles.sort_unstable();
-    doubles.dedup();
+    edges.sort_unstable();
     let mut split = 0;
-    let mut start = 0;
-    while start < doubles.len() {
-        let mut end = start + 1;
-        while end < doubles.len() && doubles[end].0 == doubles[start].0 {
-            end += 1;
-        }
-        for i in start..end {
-            for j in i + 1..end {
-                let (a, b) = (doubles[i].1, doubles[j].1);
+    for equal in edges.chunk_by(|a, b| a.0 == b.0) {
+        for (i, &(_, a)) in equal.iter().enumerate() {
+            for &(_, b) in &equal[i + 1..] {
                 let (s, t) = (surface.twin(a), surface.twin(b));
                 if surface.same_fan(a, b) && surface.same_fan(s, t) {
                     surface.pair(a, t);
@@ -239,7 +208,6 @@ pub(crate) fn split_double_edges(surface: &mut HalfEdges) -> usize {
                 }
             }
         }
-        start = end;
     }
     split
 }

@@ -79,14 +79,19 @@ impl PolygonTriangulator {
         done
     }
 
+    /// The fan of a polygon of `n` corners from the first on, seen or not.
+    pub fn fan_of(&mut self, n: usize) {
+        self.triangles.clear();
+        let last = (n as u32).saturating_sub(1);
+        self.triangles.extend((1..last).map(|k| [0, k, k + 1]));
+    }
+
     fn at(&self, corner: u32) -> Point {
         self.points[corner as usize]
     }
 
     fn fan(&mut self) -> bool {
-        let n = self.points.len() as u32;
-        self.triangles.clear();
-        self.triangles.extend((1..n - 1).map(|k| [0, k, k + 1]));
+        self.fan_of(self.points.len());
         true
     }
 
@@ -124,15 +129,25 @@ impl PolygonTriangulator {
             })
         };
         let n = self.points.len() as u32;
-        if (self.convex() && self.fan() || n as usize >= LARGE && self.delaunay())
+        if self.convex() {
+            self.fan();
+            if legal(&self.triangles, n) {
+                self.match_fan();
+                self.flip(allowed);
+                return true;
+            }
+        } else if n as usize >= LARGE
+            && self.delaunay()
             && legal(&self.triangles, n)
-            && self.flip(allowed)
+            && self.match_twins()
         {
+            self.flip(allowed);
             return true;
         }
         // Forbidden diagonals can be in the way of a fan only.
-        if n as usize <= 8 * LARGE && self.clip_ears(allowed) {
-            return self.flip(allowed);
+        if n as usize <= 8 * LARGE && self.clip_ears(allowed) && self.match_twins() {
+            self.flip(allowed);
+            return true;
         }
         self.triangles.clear();
         least_folded(&self.points, allowed, &mut self.triangles)
@@ -227,11 +242,8 @@ impl PolygonTriangulator {
     }
 
     /// Flips diagonals until none is opposite to angles of more than two
-    /// right angles in all. False if the triangles are no triangulation.
-    fn flip(&mut self, allowed: &impl Fn(u32, u32) -> bool) -> bool {
-        if !self.match_twins() {
-            return false;
-        }
+    /// right angles in all.
+    fn flip(&mut self, allowed: &impl Fn(u32, u32) -> bool) {
         self.stack.clear();
         let twins = self.twin.iter().enumerate();
         self.stack.extend(
@@ -273,7 +285,6 @@ impl PolygonTriangulator {
             self.stack
                 .extend([3 * s, 3 * s + 2, 3 * t, 3 * t + 1].iter());
         }
-        true
     }
 
     fn origin(&self, h: u32) -> u32 {
@@ -287,6 +298,18 @@ impl PolygonTriangulator {
         }
     }
 
+    /// The twins of a fan: the last side of a triangle is the first of the
+    /// next.
+    fn match_fan(&mut self) {
+        let sides = 3 * self.triangles.len() as u32;
+        self.twin.clear();
+        self.twin.resize(sides as usize, u32::MAX);
+        for h in (3..sides).step_by(3) {
+            self.link(h - 1, h);
+        }
+    }
+
+    /// The twins of any triangles; false if they are no triangulation.
     fn match_twins(&mut self) -> bool {
         let n = self.points.len() as u32;
         self.twin.clear();
@@ -338,9 +361,9 @@ fn cotangent(a: Point, b: Point, c: Point) -> f64 {
 }
 
 /// Grows with the smallest angle: minus its cotangent.
-fn sharpness(t: [Point; 3]) -> f64 {
-    let [a, b, c] = t;
-    -cotangent(b, a, c)
-        .max(cotangent(c, b, a))
-        .max(cotangent(a, c, b))
+fn sharpness([a, b, c]: [Point; 3]) -> f64 {
+    let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
+    // Minus the largest dot product of two sides from a corner.
+    let most = dot(ca, ab).min(dot(ab, bc)).min(dot(bc, ca));
+    most / norm(cross(ab, bc))
 }

@@ -139,6 +139,7 @@ fn turns_a_face_over(surface: &HalfEdges, places: &Places, h: u32, tolerance: f6
 
 #[cfg(test)]
 mod tests {
+    use super::super::pinch::Fans;
     use super::super::raw::RawCrust;
     use super::*;
 
@@ -178,7 +179,8 @@ mod tests {
             .filter(|&h| surface.alive(h))
             .count()
             / 2;
-        let (vertices, faces) = (surface.fans().1 as usize, surface.faces().len());
+        let fans = Fans::of(&surface, 16);
+        let (vertices, faces) = (fans.firsts.len(), surface.faces().len());
         assert_eq!(vertices + faces, edges);
         assert_eq!(vertices, 16 - contracted);
     }

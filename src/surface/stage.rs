@@ -4,7 +4,9 @@
 use std::time::Instant;
 
 use super::mend::{mend_crust, MendOptions};
-use super::{clean_counted, raw_crust, triangulate_from, CleanOptions, Crust, Placement, NONE};
+use super::{
+    clean_counted, raw_crust, triangulate_faces, CleanOptions, Crust, Placement, Triangles, NONE,
+};
 use crate::context::{Context, Stage};
 use crate::delaunay::{times_power, Samples};
 use crate::error::Error;
@@ -131,7 +133,11 @@ impl Job<'_> {
         stats.polygons = polygons.mesh.face_count();
         stats.part("crust: clean", &mut clock);
         context.advance(Stage::Crust, 2, 3)?;
-        let (triangles, polygon_of) = triangulate_from(&polygons);
+        let kept = (options.faces == Faces::Polygons).then(|| polygons.clone());
+        let Triangles {
+            crust: triangles,
+            starts,
+        } = triangulate_faces(polygons);
         if triangles.mesh.face_count() == 0 {
             return Err(self.nothing());
         }
@@ -170,9 +176,9 @@ impl Job<'_> {
             .map(|pair| pair.map(|f| triangles.face_balls[f as usize]))
             .collect();
         let mut crust = mended.crust;
-        if options.faces == Faces::Polygons {
+        if let Some(polygons) = kept {
             let of: Vec<u32> = (mended.source.iter())
-                .map(|&t| polygon_of[t as usize])
+                .map(|t| starts.partition_point(|start| start <= t) as u32 - 1)
                 .collect();
             crust = regroup(crust, &polygons, &of, context)?;
         }
