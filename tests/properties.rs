@@ -98,20 +98,21 @@ fn stages_keep_their_word(points: &[Point], options: &Options) -> Result<(), Tes
     if options.lambda.is_none() {
         prop_assert_eq!(poles::check(&samples, &poles), vec![]);
     }
-    let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge);
+    let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge, &context)
+        .expect("nobody cancelled");
     prop_assert_eq!(spacing.len(), samples.len());
     prop_assert!(spacing.iter().all(|s| *s > 0.0));
     let step = poles.balls.lattice.step();
     let power = power_diagram(&poles.balls.sites, step, &context).expect("few balls");
     prop_assert_eq!(power::check(&power), vec![]);
     let balls = poles.balls.on_lattice();
-    let pairs = opposites(&poles.of_sample, &at, &balls);
+    let pairs = opposites(&poles.of_sample, &samples.sites, &balls);
     let evidence = Evidence {
         balls: &balls,
         outer: &poles.balls.touches_frame,
         opposites: &pairs,
     };
-    let neighbours = Neighbours::of(&power);
+    let neighbours = Neighbours::of(&power, &context).expect("nobody cancelled");
     let how = LabelOptions::default();
     let mut labels = label(&evidence, &neighbours, &how, &context).expect("nobody cancelled");
     let before = label::energy(&evidence, &neighbours, &labels.sides, &how).total();
