@@ -135,3 +135,19 @@ impl Portion<'_> {
             .advance(self.stage, from * 100 + within, 10_000)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_are_as_many_as_asked_for_up_to_a_limit() {
+        for (asked, started) in [(1, 1), (3, 3), (100_000, MOST_THREADS)] {
+            let context = Context {
+                threads: NonZeroUsize::new(asked),
+                ..Context::default()
+            };
+            assert_eq!(context.install(rayon::current_num_threads), started);
+        }
+    }
+}

@@ -941,11 +941,9 @@ fn threads_do_not_change_a_byte() {
 fn more_threads_than_any_machine_has() {
     let place = Place::with_torus();
     place.run("torus.xyz -o one.ply --threads 1").code(DONE);
-    let start = Instant::now();
     place
         .run("torus.xyz -o many.ply --threads 100000")
         .code(DONE);
-    assert!(start.elapsed() < Duration::from_secs(60));
     assert_eq!(place.get("one.ply"), place.get("many.ply"));
 }
 
