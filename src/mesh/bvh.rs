@@ -27,7 +27,8 @@ pub(super) struct Cuboid {
 }
 
 impl Cuboid {
-    const EMPTY: Cuboid = Cuboid {
+    /// A box that no other meets, for what is gone.
+    pub const NOWHERE: Cuboid = Cuboid {
         min: [f64::INFINITY; 3],
         max: [f64::NEG_INFINITY; 3],
     };
@@ -284,7 +285,7 @@ impl Bvh {
             };
         }
         let leaf = &self.nodes[at as usize];
-        let mut whole = Cuboid::EMPTY;
+        let mut whole = Cuboid::NOWHERE;
         for s in leaf.first..leaf.first + leaf.count {
             whole.join(&self.boxes[s as usize]);
         }
@@ -350,12 +351,12 @@ fn build(items: &mut [Item], first: u32, boxes: &[Cuboid]) -> Vec<Node> {
 fn build_into(items: &mut [Item], first: u32, boxes: &[Cuboid], nodes: &mut Vec<Node>) {
     let at = nodes.len();
     nodes.push(Node {
-        cuboid: Cuboid::EMPTY,
+        cuboid: Cuboid::NOWHERE,
         right: 0,
         first,
         count: items.len() as u32,
     });
-    let mut cuboid = Cuboid::EMPTY;
+    let mut cuboid = Cuboid::NOWHERE;
     if items.len() <= LEAF {
         for item in items.iter() {
             cuboid.join(&boxes[item.triangle as usize]);
@@ -375,7 +376,7 @@ fn build_into(items: &mut [Item], first: u32, boxes: &[Cuboid], nodes: &mut Vec<
 
 /// Moves the lower half along the longest side to the front.
 fn halve(items: &mut [Item]) -> usize {
-    let mut extent = Cuboid::EMPTY;
+    let mut extent = Cuboid::NOWHERE;
     for item in items.iter() {
         for (k, &x) in item.middle.iter().enumerate() {
             extent.min[k] = extent.min[k].min(x);

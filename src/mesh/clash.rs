@@ -17,11 +17,13 @@ pub(crate) struct Clash {
     frame: Frame,
 }
 
-/// Triangles in a tree, as they were when it was made.
+/// Triangles in a tree; those that change are to be placed anew.
 pub(crate) struct Tree {
     bvh: Bvh,
     /// The triangle in each slot.
     listed: Vec<u32>,
+    /// The slot of each triangle, known once one was placed anew.
+    slots: Vec<u32>,
 }
 
 /// The box of a triangle.
@@ -90,7 +92,11 @@ impl Clash {
             .collect();
         let bvh = Bvh::new(&boxes);
         let listed = bvh.order.iter().map(|&k| listed[k as usize]).collect();
-        Tree { bvh, listed }
+        Tree {
+            bvh,
+            listed,
+            slots: Vec::new(),
+        }
     }
 
     /// All pairs of triangles that meet so, and a triangle paired with itself
@@ -160,8 +166,21 @@ impl Clash {
 }
 
 impl Tree {
-    /// Calls `visit` with every triangle whose box met the given one when the
-    /// tree was made.
+    /// A triangle that was alive when the tree was made has these corners now,
+    /// or is gone.
+    pub fn place(&mut self, triangle: u32, corners: Option<&[Point; 3]>) {
+        if self.slots.is_empty() {
+            let most = self.listed.iter().max().map_or(0, |&t| t as usize + 1);
+            self.slots = vec![0; most];
+            for (slot, &t) in self.listed.iter().enumerate() {
+                self.slots[t as usize] = slot as u32;
+            }
+        }
+        let cuboid = corners.map_or(Cuboid::NOWHERE, Cuboid::of);
+        self.bvh.replace(self.slots[triangle as usize], cuboid);
+    }
+
+    /// Calls `visit` with every triangle whose box meets the given one.
     pub fn near(&self, reach: &Reach, mut visit: impl FnMut(u32)) {
         let cuboid = &reach.0;
         self.bvh

@@ -7,12 +7,6 @@
 use super::bvh::{Bvh, Cuboid};
 use crate::geom::Point;
 
-/// A box that no other meets.
-const NOWHERE: Cuboid = Cuboid {
-    min: [f64::INFINITY; 3],
-    max: [f64::NEG_INFINITY; 3],
-};
-
 pub(super) struct Moving {
     bvh: Bvh,
     /// The slot of each triangle.
@@ -38,7 +32,8 @@ impl Moving {
 
     /// The triangle is gone.
     pub fn remove(&mut self, triangle: u32) {
-        self.bvh.replace(self.slot[triangle as usize], NOWHERE);
+        self.bvh
+            .replace(self.slot[triangle as usize], Cuboid::NOWHERE);
     }
 
     /// The triangles whose boxes meet the given one.

@@ -161,35 +161,37 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
     done.drawn_apart = moved.len();
     mesh.free(&moved);
     laps.lap("draw apart");
-    let tree = clash.tree(&mesh.points, &mesh.tris);
+    let mut tree = clash.tree(&mesh.points, &mesh.tris);
     let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
     done.found = pairs.len();
     laps.lap("search");
     let gentle = LEVELS - 1;
-    let (first, mut left) = mend(&mut mesh, &clash, tree, pairs, 0.0, gentle, &round, cx)?;
+    let (first, mut left) = mend(&mut mesh, &clash, &mut tree, pairs, 0.0, gentle, &round, cx)?;
     let mut more = Mended::default();
     if !left.is_empty() {
         // Around what resists the mesh may be coarser, before samples go.
         let tolerance = around(&mesh, &left, &spacing);
         coarsen(&mut mesh, &tolerance, cx)?;
-        let tree = clash.tree(&mesh.points, &mesh.tris);
+        tree = clash.tree(&mesh.points, &mesh.tris);
         let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
-        (more, left) = mend(&mut mesh, &clash, tree, pairs, 0.0, LEVELS, &round, cx)?;
+        (more, left) = mend(&mut mesh, &clash, &mut tree, pairs, 0.0, LEVELS, &round, cx)?;
     }
     laps.lap("mend");
     if left.is_empty() {
         let least = least_area(&mesh);
         let pairs = thin(&mesh, least);
         if !pairs.is_empty() {
-            let tree = clash.tree(&mesh.points, &mesh.tris);
-            let (second, mut rest) =
-                mend(&mut mesh, &clash, tree, pairs, least, gentle, &round, cx)?;
+            let (second, mut rest) = mend(
+                &mut mesh, &clash, &mut tree, pairs, least, gentle, &round, cx,
+            )?;
             // What is no worse than thin may stay.
             rest.retain(|&(s, t)| s != t || clash.is_flat(&mesh.place(s)));
             left = rest;
             done.changes += second.changes;
         }
+        laps.lap("thin");
         done.samples_lost += shells.take_out_reversed(&mut mesh, &clash);
+        laps.lap("shells");
     }
     done.changes += first.changes + more.changes;
     done.samples_lost += more.samples_lost;

@@ -20,8 +20,6 @@ use std::collections::BTreeSet;
 
 /// How wide the search goes, in steps of escalation.
 pub(crate) const LEVELS: usize = 4;
-/// The tree is made anew when this many triangles changed since.
-const STALE: usize = 4096;
 
 /// What mending did.
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,7 +42,8 @@ enum Change {
     Shift(u32, Point),
 }
 
-/// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles.
+/// Mends `mesh`, whose bad pairs are `pairs`; `tree` holds its triangles, and
+/// follows them.
 /// `round` rounds a new position as the file will hold it. Triangles count as
 /// bad whose vector area is not above `thin`; with 0 those that have exactly
 /// none. With fewer `levels` than [`LEVELS`] no sample goes. Tells the pairs
@@ -54,7 +53,7 @@ enum Change {
 pub(crate) fn mend(
     mesh: &mut TriMesh,
     clash: &Clash,
-    tree: Tree,
+    tree: &mut Tree,
     pairs: Vec<(u32, u32)>,
     thin: f64,
     levels: usize,
@@ -66,8 +65,6 @@ pub(crate) fn mend(
         return Ok((done, pairs));
     }
     let mut work = Work {
-        changed: vec![false; mesh.tris.len()],
-        changes: Vec::new(),
         tree,
         mesh,
         clash,
@@ -100,9 +97,6 @@ pub(crate) fn mend(
                 }
                 None => stuck.push((s, t)),
             }
-            if work.changes.len() > STALE {
-                work.refresh();
-            }
         }
         stuck.sort_unstable();
         stuck.dedup();
@@ -120,10 +114,7 @@ struct Work<'a> {
     clash: &'a Clash,
     thin: f64,
     round: &'a dyn Fn(Point) -> Point,
-    tree: Tree,
-    /// Triangles that changed since the tree was made.
-    changed: Vec<bool>,
-    changes: Vec<u32>,
+    tree: &'a mut Tree,
     fan: Vec<u32>,
     near: Vec<u32>,
     /// All bad pairs there are, both ways round.
@@ -131,13 +122,6 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    fn refresh(&mut self) {
-        self.tree = self.clash.tree(&self.mesh.points, &self.mesh.tris);
-        for t in self.changes.drain(..) {
-            self.changed[t as usize] = false;
-        }
-    }
-
     fn flat(&self, t: u32) -> bool {
         self.clash.is_flat(&self.mesh.place(t))
     }
@@ -195,13 +179,10 @@ impl Work<'_> {
             }
             let reach = Reach::of(&place);
             self.near.clear();
-            let (near, changed) = (&mut self.near, &self.changed);
-            self.tree.near(&reach, |t| {
-                if !changed[t as usize] {
-                    near.push(t);
-                }
-            });
-            let list = self.near.iter().chain(&self.changes).chain(touched);
+            let near = &mut self.near;
+            self.tree.near(&reach, |t| near.push(t));
+            // A change that is only tried is not in the tree.
+            let list = self.near.iter().chain(touched);
             for &t in list {
                 if t == s || !mesh.alive(t) || touched.binary_search(&t).is_ok() && t < s {
                     continue;
@@ -273,9 +254,8 @@ impl Work<'_> {
         self.apply(change);
         done.changes += 1;
         for &t in &touched {
-            if !std::mem::replace(&mut self.changed[t as usize], true) {
-                self.changes.push(t);
-            }
+            let place = self.mesh.alive(t).then(|| self.mesh.place(t));
+            self.tree.place(t, place.as_ref());
         }
         self.count(&touched, usize::MAX, &mut after);
         for &s in &touched {
