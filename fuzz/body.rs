@@ -10,13 +10,15 @@ use powercrust::{reconstruct, Context, Error, Faces, Options, Point};
 
 /// Names of the targets; seeds lie in folders of these names.
 #[allow(dead_code)]
-pub const TARGETS: [&str; 9] = [
+pub const TARGETS: [&str; 11] = [
     "cloud_ply",
     "cloud_obj",
     "cloud_off",
     "cloud_text",
     "cloud_stl",
     "cloud_npy",
+    "cloud_pcd",
+    "cloud_las",
     "mesh",
     "axis",
     "pipeline",
@@ -31,6 +33,8 @@ pub fn run(target: &str, bytes: &[u8]) {
         "cloud_text" => cloud(bytes, CloudFormat::Text),
         "cloud_stl" => cloud(bytes, CloudFormat::Stl),
         "cloud_npy" => cloud(bytes, CloudFormat::Npy),
+        "cloud_pcd" => cloud(bytes, CloudFormat::Pcd),
+        "cloud_las" => cloud(bytes, CloudFormat::Las),
         "mesh" => meshes(bytes),
         "axis" => axes(bytes),
         "pipeline" => pipeline(bytes),

@@ -6,6 +6,7 @@ import importlib.util
 import io
 import json
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -148,6 +149,10 @@ def read_points(path: Path):
 
         vertices = PlyData.read(str(path))["vertex"]
         points = np.column_stack([np.asarray(vertices[k], np.float64) for k in "xyz"])
+    elif path.suffix == ".las":
+        points = las_points(path.read_bytes())
+    elif path.suffix == ".pcd":
+        points = pcd_points(path.read_bytes())
     else:
         rows = []
         for line in path.read_text(errors="replace").splitlines():
@@ -164,7 +169,46 @@ def read_points(path: Path):
     return points[np.isfinite(points).all(axis=1)]
 
 
-CLOUD_FORMATS = (".ply", ".xyz", ".pts", ".pwn", ".txt", ".csv", ".npy", ".obj", ".off", ".stl")
+def las_points(data: bytes):
+    """The points of an uncompressed LAS file."""
+    import numpy as np
+
+    start, = struct.unpack_from("<I", data, 96)
+    length, count = struct.unpack_from("<HI", data, 105)
+    numbers = np.frombuffer(data, np.uint8, count * length, start).reshape(count, length)
+    whole = numbers[:, :12].copy().view("<i4")
+    scale, offset = np.frombuffer(data, "<f8", 6, 131).reshape(2, 3)
+    return whole * scale + offset
+
+
+def pcd_points(data: bytes):
+    """The points of a compressed PCD file whose fields are x y z in 32 bits."""
+    import numpy as np
+
+    head, _, body = data.partition(b"DATA binary_compressed\n")
+    if b"FIELDS x y z\nSIZE 4 4 4\nTYPE F F F" not in head:
+        raise ValueError("not a PCD file of the kind this knows")
+    packed, size = struct.unpack_from("<II", body)
+    body, out, at = body[8:8 + packed], bytearray(), 0
+    while at < len(body):
+        control, at = body[at], at + 1
+        if control < 32:
+            out += body[at:at + control + 1]
+            at += control + 1
+            continue
+        length = control >> 5
+        if length == 7:
+            length, at = length + body[at], at + 1
+        start = len(out) - ((control & 31) << 8 | body[at]) - 1
+        at += 1
+        for k in range(start, start + length + 2):
+            out.append(out[k])
+    assert len(out) == size
+    return np.frombuffer(bytes(out), "<f4").reshape(3, -1).T.astype(np.float64)
+
+
+CLOUD_FORMATS = (".ply", ".xyz", ".pts", ".pwn", ".txt", ".csv", ".npy", ".obj", ".off", ".stl", ".pcd",
+                 ".las")
 
 
 def clouds(names, most: int) -> list:

@@ -350,10 +350,10 @@ fn input_that_cannot_be_read() {
     place
         .run("dir.ply -o crust.ply")
         .fails(FILE, "dir.ply: cannot read: this is a directory");
-    place.put("scan.las", "LASF");
+    place.put("scan.e57", "LASF");
     place
-        .run("scan.las -o crust.ply")
-        .fails(FILE, ".las files cannot be read")
+        .run("scan.e57 -o crust.ply")
+        .fails(FILE, ".e57 files cannot be read")
         .says("hint: convert");
     place.put("unknown.bin", [1, 0, 2, 0, 255, 9]);
     place

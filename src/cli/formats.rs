@@ -34,9 +34,7 @@ pub fn input_format(path: &Path, said: Option<&str>) -> Result<Option<CloudForma
     let Some(extension) = extension(path) else {
         return Ok(None);
     };
-    let known_elsewhere = [
-        "las", "laz", "e57", "pcd", "vtk", "vtp", "vtu", "glb", "gltf", "3mf",
-    ];
+    let known_elsewhere = ["laz", "e57", "vtk", "vtp", "vtu", "glb", "gltf", "3mf"];
     if known_elsewhere
         .iter()
         .any(|e| extension.eq_ignore_ascii_case(e))

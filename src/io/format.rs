@@ -19,6 +19,10 @@ pub enum CloudFormat {
     Stl,
     /// A NumPy array of shape (n, 3) or wider.
     Npy,
+    /// Point Cloud Library: text, binary, or binary compressed.
+    Pcd,
+    /// Laser scans, uncompressed.
+    Las,
 }
 
 const CLOUD: &[(&str, CloudFormat)] = &[
@@ -37,6 +41,8 @@ const CLOUD: &[(&str, CloudFormat)] = &[
     ("pwn", CloudFormat::Text),
     ("stl", CloudFormat::Stl),
     ("npy", CloudFormat::Npy),
+    ("pcd", CloudFormat::Pcd),
+    ("las", CloudFormat::Las),
 ];
 
 fn by_extension<F: Copy>(table: &[(&str, F)], extension: &str) -> Option<F> {
@@ -73,6 +79,12 @@ impl CloudFormat {
         if bytes.starts_with(b"\x93NUMPY") {
             return CloudFormat::Npy;
         }
+        if super::las::looks_like(bytes) {
+            return CloudFormat::Las;
+        }
+        if super::pcd::looks_like(head) {
+            return CloudFormat::Pcd;
+        }
         if super::stl::looks_binary(bytes) || word.eq_ignore_ascii_case(b"solid") {
             return CloudFormat::Stl;
         }
@@ -102,6 +114,8 @@ impl CloudFormat {
             CloudFormat::Text => "text",
             CloudFormat::Stl => "STL",
             CloudFormat::Npy => "NPY",
+            CloudFormat::Pcd => "PCD",
+            CloudFormat::Las => "LAS",
         }
     }
 }
@@ -163,7 +177,7 @@ impl MeshFormat {
             CloudFormat::Obj => Some(MeshFormat::Obj),
             CloudFormat::Off => Some(MeshFormat::Off),
             CloudFormat::Stl => Some(MeshFormat::Stl),
-            CloudFormat::Text | CloudFormat::Npy => None,
+            CloudFormat::Text | CloudFormat::Npy | CloudFormat::Pcd | CloudFormat::Las => None,
         }
     }
 

@@ -23,9 +23,11 @@ mod error;
 mod format;
 mod glb;
 mod json;
+mod las;
 mod npy;
 mod obj;
 mod off;
+mod pcd;
 mod ply;
 mod scan;
 mod sink;
@@ -64,6 +66,8 @@ pub fn read_cloud(
         CloudFormat::Text => text::read_cloud(bytes, options),
         CloudFormat::Stl => stl::read_cloud(bytes, options),
         CloudFormat::Npy => npy::read_cloud(bytes, options),
+        CloudFormat::Pcd => pcd::read_cloud(bytes, options),
+        CloudFormat::Las => las::read_cloud(bytes, options),
     }
 }
 

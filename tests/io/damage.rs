@@ -2,6 +2,7 @@
 
 use super::formats::npy;
 use super::round_trip::{ascii, axis, polar_balls, solid, written, written_axis};
+use super::scanners::{las, lzf, pcd, XYZ};
 use super::{AXES, MESHES, PLAIN, SKIP};
 use powercrust::io::*;
 
@@ -27,6 +28,11 @@ fn seeds() -> Vec<Vec<u8>> {
     }
     let dict = "{'descr': '<f4', 'fortran_order': True, 'shape': (3, 4), }\n";
     files.push(npy(dict, &[7; 48]));
+    files.push(pcd(XYZ, 2, "ascii", b"1 2 3\n4 5 6\n"));
+    files.push(pcd(XYZ, 3, "binary", &[7; 36]));
+    files.push(pcd(XYZ, 3, "binary_compressed", &lzf(&[7; 36])));
+    files.push(las(2, 3, 34, &[[1, 2, 3], [4, 5, 6]]));
+    files.push(las(4, 7, 36, &[[1, 2, 3]]));
     for text in [
         "x,y,z,\"nx\",ny,nz\n1,2,3,0,0,1\n4.5,-1e3,.5,0,1,0\n",
         "# c\nd 1 1 1\np 1 2 3\np 4 5 6\n",
@@ -50,6 +56,8 @@ fn read_every_way(bytes: &[u8]) {
         CloudFormat::Text,
         CloudFormat::Stl,
         CloudFormat::Npy,
+        CloudFormat::Pcd,
+        CloudFormat::Las,
     ] {
         for options in [PLAIN, SKIP] {
             match read_cloud(bytes, format, &options) {

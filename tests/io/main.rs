@@ -5,6 +5,7 @@ mod formats;
 mod ply;
 mod public;
 mod round_trip;
+mod scanners;
 mod text;
 
 use powercrust::io::*;

@@ -1,0 +1,6 @@
+#![no_main]
+
+#[path = "../body.rs"]
+mod body;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| body::run("cloud_pcd", bytes));
