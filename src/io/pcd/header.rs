@@ -86,7 +86,7 @@ impl Header {
     /// The header, and the lines after it.
     pub fn read(bytes: &[u8]) -> Result<(Header, Lines<'_>), ReadError> {
         let mut lines = Lines::new(bytes);
-        let mut entries: Vec<(&[u8], u64, Vec<&[u8]>)> = Vec::new();
+        let mut entries: Vec<Entry> = Vec::new();
         loop {
             let Some((number, line)) = lines.next() else {
                 return Err(ReadError::Missing {
@@ -118,19 +118,23 @@ impl Header {
                     ),
                 ));
             }
-            entries.push((key, number, words.collect()));
+            entries.push(Entry {
+                key,
+                line: number,
+                words: words.collect(),
+            });
             if key == b"DATA" {
                 break;
             }
         }
-        let entry = |key: &[u8]| entries.iter().find(|e| e.0 == key);
-        if let Some((_, line, words)) = entry(b"VERSION") {
+        let entry = |key: &[u8]| entries.iter().find(|e| e.key == key);
+        if let Some(Entry { line, words, .. }) = entry(b"VERSION") {
             let version = words.first().and_then(|w| scan::number(w));
             if !version.is_some_and(|v| (0.5..0.8).contains(&v)) {
                 return Err(fault(*line, "this version of PCD is not known".into()));
             }
         }
-        let (_, _, words) = entry(b"DATA").ok_or_else(|| missing("DATA"))?;
+        let Entry { words, .. } = entry(b"DATA").ok_or_else(|| missing("DATA"))?;
         let encoding = match words.first() {
             Some(&b"ascii") => Encoding::Ascii,
             Some(&b"binary") => Encoding::Binary,
@@ -169,12 +173,19 @@ fn missing(key: &str) -> ReadError {
     }
 }
 
-type Entry<'e, 'a> = &'e (&'a [u8], u64, Vec<&'a [u8]>);
+/// A line of the header.
+struct Entry<'a> {
+    key: &'a [u8],
+    line: u64,
+    words: Vec<&'a [u8]>,
+}
 
 fn fields<'e, 'a: 'e>(
-    entry: &dyn Fn(&[u8]) -> Option<Entry<'e, 'a>>,
+    entry: &dyn Fn(&[u8]) -> Option<&'e Entry<'a>>,
 ) -> Result<Vec<Field>, ReadError> {
-    let (_, line, names) = entry(b"FIELDS").ok_or_else(|| missing("FIELDS"))?;
+    let Entry {
+        line, words: names, ..
+    } = entry(b"FIELDS").ok_or_else(|| missing("FIELDS"))?;
     if names.len() > columns::MOST {
         return Err(fault(
             *line,
@@ -183,7 +194,7 @@ fn fields<'e, 'a: 'e>(
     }
     // One word a field; a missing COUNT means one value each.
     let words = |key: &str, default: Option<&'static [u8]>| {
-        let Some((_, line, words)) = entry(key.as_bytes()) else {
+        let Some(Entry { line, words, .. }) = entry(key.as_bytes()) else {
             return match default {
                 Some(word) => Ok((0, vec![word; names.len()])),
                 None => Err(missing(key)),
@@ -236,9 +247,9 @@ fn fields<'e, 'a: 'e>(
 }
 
 /// POINTS, or WIDTH times HEIGHT; where both are given they must agree.
-fn points<'e, 'a: 'e>(entry: &dyn Fn(&[u8]) -> Option<Entry<'e, 'a>>) -> Result<u64, ReadError> {
+fn points<'e, 'a: 'e>(entry: &dyn Fn(&[u8]) -> Option<&'e Entry<'a>>) -> Result<u64, ReadError> {
     let one = |key: &str| -> Result<Option<u64>, ReadError> {
-        let Some((_, line, words)) = entry(key.as_bytes()) else {
+        let Some(Entry { line, words, .. }) = entry(key.as_bytes()) else {
             return Ok(None);
         };
         let word = words.first().copied().unwrap_or_default();
@@ -253,7 +264,7 @@ fn points<'e, 'a: 'e>(entry: &dyn Fn(&[u8]) -> Option<Entry<'e, 'a>>) -> Result<
     };
     match (one("POINTS")?, size) {
         (Some(points), Some(size)) if points != size => Err(ReadError::Malformed {
-            place: Place::Line(entry(b"POINTS").map_or(0, |e| e.1)),
+            place: Place::Line(entry(b"POINTS").map_or(0, |e| e.line)),
             what: format!("{points} points, but WIDTH times HEIGHT is {size}"),
         }),
         (Some(points), _) | (None, Some(points)) => Ok(points),
