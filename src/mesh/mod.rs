@@ -17,7 +17,7 @@ mod intersect;
 mod measure;
 mod moving;
 mod nesting;
-mod polygon;
+pub(crate) mod polygon;
 mod quadric;
 mod report;
 mod soup;

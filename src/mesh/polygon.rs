@@ -9,6 +9,7 @@
 
 use super::frame::{drop_axis, Frame, Kernel};
 use crate::geom::vec3::{add, cross, sub};
+use crate::geom::Point;
 
 /// Ears are cut in quadratic time, so not from polygons larger than this.
 const MOST_CORNERS: usize = 4096;
@@ -16,21 +17,7 @@ const MOST_CORNERS: usize = 4096;
 /// Appends the triangles of one face of three corners or more, always two
 /// less than it has corners.
 pub(super) fn triangulate(frame: &Frame, face: &[u32], into: &mut Vec<[u32; 3]>) {
-    let at = |k: usize| frame.points[face[k] as usize];
-    let mut normal = [0.0f64; 3];
-    for k in 1..face.len() - 1 {
-        let sides = (sub(at(k), at(0)), sub(at(k + 1), at(0)));
-        normal = add(normal, cross(sides.0, sides.1));
-    }
-    let axis = (1..3).fold(0, |best, k| match normal[k].abs() > normal[best].abs() {
-        true => k,
-        false => best,
-    });
-    let polygon = Polygon {
-        kernel: frame.kernel,
-        points: (0..face.len()).map(|k| drop_axis(at(k), axis)).collect(),
-        turn: if normal[axis] < 0.0 { -1 } else { 1 },
-    };
+    let polygon = Polygon::new(frame, face);
     let named = |t: [usize; 3]| t.map(|k| face[k]);
     let fan = (1..face.len() - 1).map(|k| [0, k, k + 1]);
     if !fan.clone().all(|t| polygon.turns(t) > 0) {
@@ -42,6 +29,27 @@ pub(super) fn triangulate(frame: &Frame, face: &[u32], into: &mut Vec<[u32; 3]>)
     into.extend(fan.map(named));
 }
 
+/// Turns each ring to its first corner from which the fan of its triangles
+/// turns one way: most programs cut faces so. False for rings without one.
+pub(crate) fn start_fans(points: &[Point], rings: &mut [Vec<u32>]) -> Vec<bool> {
+    let frame = Frame::new(points);
+    let start = |ring: &mut Vec<u32>| {
+        let n = ring.len();
+        if n < 4 {
+            return n == 3;
+        }
+        let polygon = Polygon::new(&frame, ring);
+        let fans = |first: &usize| {
+            let corner = |k: usize| (first + k) % n;
+            (1..n - 1).all(|k| polygon.turns([corner(0), corner(k), corner(k + 1)]) > 0)
+        };
+        let first = (0..n).find(fans);
+        ring.rotate_left(first.unwrap_or(0));
+        first.is_some()
+    };
+    rings.iter_mut().map(start).collect()
+}
+
 /// A polygon in the plane.
 struct Polygon {
     kernel: Kernel,
@@ -51,6 +59,25 @@ struct Polygon {
 }
 
 impl Polygon {
+    /// A face seen along the axis its normal is closest to.
+    fn new(frame: &Frame, face: &[u32]) -> Polygon {
+        let at = |k: usize| frame.points[face[k] as usize];
+        let mut normal = [0.0f64; 3];
+        for k in 1..face.len() - 1 {
+            let sides = (sub(at(k), at(0)), sub(at(k + 1), at(0)));
+            normal = add(normal, cross(sides.0, sides.1));
+        }
+        let axis = (1..3).fold(0, |best, k| match normal[k].abs() > normal[best].abs() {
+            true => k,
+            false => best,
+        });
+        Polygon {
+            kernel: frame.kernel,
+            points: (0..face.len()).map(|k| drop_axis(at(k), axis)).collect(),
+            turn: if normal[axis] < 0.0 { -1 } else { 1 },
+        }
+    }
+
     /// 1 if the triangle runs round the same way as the polygon, 0 if it has
     /// no area.
     fn turns(&self, [a, b, c]: [usize; 3]) -> i8 {
@@ -134,6 +161,40 @@ mod tests {
         let fan: f64 = (1..21).map(|k| area(&[0, k, k + 1])).sum();
         assert!(triangles.iter().all(|t| area(t) > 0.0));
         assert_eq!(triangles.iter().map(area).sum::<f64>(), fan);
+    }
+
+    #[test]
+    fn rings_start_where_they_can_be_fanned() {
+        // Not convex at the second corner: only from it and the fourth.
+        let arrow: [Point; 4] = [
+            [0.0, 0.0, 1.0],
+            [1.0, 1.0, 1.0],
+            [2.0, 0.0, 1.0],
+            [1.0, 3.0, 1.0],
+        ];
+        // A U: no corner sees all others.
+        let u = [
+            [0, 0],
+            [5, 0],
+            [5, 5],
+            [4, 5],
+            [4, 1],
+            [1, 1],
+            [1, 5],
+            [0, 5],
+        ];
+        let u = u.map(|[x, y]| [f64::from(x), f64::from(y), 2.0]);
+        let points: Vec<Point> = arrow.into_iter().chain(u).collect();
+        let mut rings = vec![
+            vec![0, 1, 2, 3],
+            vec![3, 2, 1, 0],
+            vec![1, 2, 3, 0],
+            (4..12).collect(),
+            vec![0, 2, 3],
+        ];
+        let can = start_fans(&points, &mut rings);
+        assert_eq!(can, [true, true, true, false, true]);
+        assert_eq!(rings[..3], [[1, 2, 3, 0], [3, 2, 1, 0], [1, 2, 3, 0]]);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::context::{Context, Stage};
 use crate::delaunay::{times_power, Samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
+use crate::mesh::polygon::start_fans;
 use crate::mesh::{check, CheckOptions, Finding, PolygonMesh, Shape};
 use crate::options::{Faces, Options};
 use crate::poles::Balls;
@@ -205,7 +206,8 @@ impl Job<'_> {
 
 /// Polygons again where mending changed nothing: `of` names the polygon each
 /// triangle was cut from. Those whose triangles do not fill them as they were,
-/// or that cross others as the judge of meshes cuts them, stay triangles.
+/// that no fan from a corner fills, or that cross others so cut, stay
+/// triangles: other programs cut polygons into fans from their first corner.
 fn regroup(
     triangles: Crust,
     polygons: &Crust,
@@ -237,6 +239,8 @@ fn regroup(
         whole.push(same);
         rings.push(ring.unwrap_or_default());
     }
+    let fans = start_fans(&mesh.vertices, &mut rings);
+    whole.iter_mut().zip(fans).for_each(|(w, fan)| *w &= fan);
     loop {
         let mut out = Crust {
             mesh: PolygonMesh::with_vertices(mesh.vertices.clone()),
