@@ -182,9 +182,10 @@ impl Work<'_> {
             let near = &mut self.near;
             self.tree.near(&reach, |t| near.push(t));
             // A change that is only tried is not in the tree.
-            let list = self.near.iter().chain(touched);
-            for &t in list {
-                if t == s || !mesh.alive(t) || touched.binary_search(&t).is_ok() && t < s {
+            near.retain(|t| touched.binary_search(t).is_err());
+            let later = touched.iter().filter(|&&t| t > s);
+            for &t in self.near.iter().chain(later) {
+                if !mesh.alive(t) {
                     continue;
                 }
                 let place = mesh.place(t);
@@ -195,17 +196,12 @@ impl Work<'_> {
                         .meet(&mesh.points, mesh.tris[s as usize], mesh.tris[t as usize])
                 {
                     found.push((s.min(t), s.max(t)));
+                    if found.len() >= most {
+                        return;
+                    }
                 }
             }
             found[first..].sort_unstable();
-            let mut keep = first;
-            for k in first..found.len() {
-                if k == first || found[k] != found[k - 1] {
-                    found[keep] = found[k];
-                    keep += 1;
-                }
-            }
-            found.truncate(keep);
         }
     }
 
@@ -231,14 +227,20 @@ impl Work<'_> {
         let mut best: Option<(usize, usize)> = None;
         let mut after = Vec::new();
         for (k, (_, change, touched, before)) in changes.iter().enumerate() {
+            // What cannot help more than the best so far need not be counted.
+            let least = best.map_or(0, |(gain, _)| gain);
+            let most = before.saturating_sub(least);
+            if most == 0 {
+                continue;
+            }
             self.mesh.begin();
             self.apply(*change);
-            self.count(touched, *before, &mut after);
+            self.count(touched, most, &mut after);
             self.mesh.take_back();
-            let gain = before.saturating_sub(after.len());
-            if gain > best.map_or(0, |(g, _)| g) {
-                best = Some((gain, k));
+            if after.len() >= most {
+                continue;
             }
+            best = Some((before - after.len(), k));
             // The cheapest that leaves nothing behind will do.
             if after.is_empty() {
                 break;
