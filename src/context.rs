@@ -26,6 +26,8 @@ pub enum Stage {
     Check,
     /// Reducing the number of triangles.
     Reduce,
+    /// Simplifying a medial axis.
+    Simplify,
 }
 
 impl Stage {
@@ -40,6 +42,7 @@ impl Stage {
             Stage::Crust => "crust",
             Stage::Check => "check",
             Stage::Reduce => "reduce",
+            Stage::Simplify => "simplify",
         }
     }
 }

@@ -42,6 +42,12 @@
 //! - [`surface::raw_crust`], [`surface::clean`], [`surface::triangulate`]: the surface between unlike cells
 //! - [`surface::power_shape`]: the axis among like balls
 //!
+//! **Medial axes** (section 7.3)
+//! - [`axis::LabelledBalls`]: balls with labels and power diagram, of a result or of a file
+//! - [`axis::simplify`]: without unstable and redundant balls
+//! - [`PowerShape::thin`], [`PowerShape::betti`]: without flat tetrahedra; parts, tunnels, voids
+//! - [`simplify::Contact`]: what the samples on a ball span
+//!
 //! **Meshes**
 //! - [`mesh::check`]: is a mesh closed, manifold, oriented and free of crossings? Exact
 //! - [`mesh::components`], [`mesh::component_volumes`], [`mesh::enclosing`]: its parts
@@ -63,6 +69,7 @@
 #![forbid(unsafe_code)]
 
 pub mod attributes;
+pub mod axis;
 pub mod context;
 pub mod delaunay;
 pub mod error;

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use rayon::prelude::*;
+
 use crate::context::{Context, Stage};
 use crate::delaunay::{delaunay, samples, Lattice};
 use crate::error::Error;
@@ -13,7 +15,7 @@ use crate::memory;
 use crate::options::Options;
 use crate::poles::{poles, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
-use crate::simplify::merge_redundant;
+use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
 use crate::surface::stage::Job;
 use crate::surface::{drop_inverted, power_shape, Crust, PowerShape};
@@ -41,6 +43,10 @@ pub struct Reconstruction {
     pub sample_source: Vec<u32>,
     /// The power diagram of the balls; its sites are in lattice units.
     pub power: PowerDiagram,
+    /// The samples that each ball touches, or stands for.
+    pub touching: Touching,
+    /// The spacing of the samples at each sample, in the units of the input.
+    pub spacing: Vec<f64>,
     /// Counts and timings.
     pub stats: Stats,
 }
@@ -51,6 +57,46 @@ impl Reconstruction {
         let balls: Vec<Ball> = self.balls.iter().map(|b| b.ball).collect();
         let sides: Vec<Side> = self.balls.iter().map(|b| b.side).collect();
         power_shape(&self.power, &balls, &sides, side)
+    }
+
+    /// The power shape of one side with all that is known of its balls, and the
+    /// balls of the other side; `points` are those that were given to
+    /// [`reconstruct`].
+    pub fn axis(&self, side: Side, points: &[Point]) -> PowerShape {
+        let mut shape = self.power_shape(side);
+        let contacts = self.contacts(points);
+        shape.contacts = shape.ids.iter().map(|&b| contacts[b as usize]).collect();
+        shape.touching.starts.push(0);
+        for &b in &shape.ids {
+            let samples = self.touching.at(b).iter();
+            let source = |&s: &u32| self.sample_source[s as usize];
+            shape.touching.samples.extend(samples.map(source));
+            shape
+                .touching
+                .starts
+                .push(shape.touching.samples.len() as u32);
+        }
+        for (ball, contact) in self.balls.iter().zip(contacts) {
+            if ball.side != side {
+                shape.others.push(ball.ball);
+                shape.other_contacts.push(contact);
+            }
+        }
+        shape
+    }
+
+    /// What the samples on each ball span (section 7.3); `points` are those
+    /// that were given to [`reconstruct`].
+    pub fn contacts(&self, points: &[Point]) -> Vec<Contact> {
+        let of_ball = |b: u32| {
+            let samples = self.touching.at(b);
+            let place = |&s: &u32| points[self.sample_source[s as usize] as usize];
+            let places: Vec<Point> = samples.iter().map(place).collect();
+            let wider = |most: f64, &s: &u32| most.max(self.spacing[s as usize]);
+            Contact::of(&places, samples.iter().fold(0.0, wider))
+        };
+        let count = self.balls.len() as u32;
+        (0..count).into_par_iter().map(of_ball).collect()
     }
 }
 
@@ -188,12 +234,20 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
                 .unwrap_or(u32::MAX),
         })
         .collect();
+    let touching = Touching {
+        starts: poles.balls.touch_starts,
+        samples: poles.balls.touched,
+    };
+    let spacing = spacing.iter().map(|&h| lattice.length_to_user(h));
+    let spacing = spacing.collect();
     clock.lap(Stage::Crust, &mut stats);
     Ok(Reconstruction {
         crust,
         balls,
         sample_source: samples.source,
         power,
+        touching,
+        spacing,
         stats,
     })
 }

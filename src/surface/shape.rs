@@ -1,12 +1,14 @@
 //! The power shape: the medial axis as a simplicial complex.
 
+use crate::geom::vec3::dist_sq;
 use crate::geom::{Ball, Side};
 use crate::power::PowerDiagram;
+use crate::simplify::{betti, thin, Betti, Contact, Simplices, Touching};
 use crate::tetra::FACETS;
 
 /// The part of the regular triangulation whose balls all carry one label
 /// (section 3.4): an approximation of the medial axis.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PowerShape {
     /// The balls, with indices of their own.
     pub balls: Vec<Ball>,
@@ -18,6 +20,44 @@ pub struct PowerShape {
     pub triangles: Vec<[u32; 3]>,
     /// Quadruples of balls whose cells share a vertex, ascending, sorted.
     pub tetrahedra: Vec<[u32; 4]>,
+    /// The side of each ball; empty where it is not known.
+    pub sides: Vec<Side>,
+    /// What the samples on each ball span; empty where it is not known.
+    pub contacts: Vec<Contact>,
+    /// The input points that each ball touches; empty where they are not
+    /// known.
+    pub touching: Touching,
+    /// The balls of the other side, which the simplices do not use: with them
+    /// the power diagram can be made again.
+    pub others: Vec<Ball>,
+    /// What the samples on those span; empty where it is not known.
+    pub other_contacts: Vec<Contact>,
+}
+
+impl PowerShape {
+    /// The simplices with all their faces.
+    pub fn simplices(&self) -> Simplices {
+        let (edges, triangles) = (&self.edges, &self.triangles);
+        Simplices::closed(self.balls.len(), edges, triangles, &self.tetrahedra)
+    }
+
+    /// The Betti numbers over Z/2, exact. Those of the inner shape are those
+    /// of the solid.
+    pub fn betti(&self) -> Betti {
+        betti(&self.simplices())
+    }
+
+    /// Collapses the flat tetrahedra (section 3.4) without a change of the
+    /// Betti numbers. Returns how many there were; any still there close up
+    /// on each other, as those of a power shape cannot.
+    pub fn thin(&mut self) -> usize {
+        let at = |v: u32| self.balls[v as usize].centre;
+        let thinned = thin(&self.simplices(), &|[a, b]| dist_sq(at(a), at(b)));
+        self.edges = thinned.complex.edges;
+        self.triangles = thinned.complex.triangles;
+        self.tetrahedra = thinned.complex.tetrahedra;
+        thinned.collapsed
+    }
 }
 
 /// Collects the simplices among the balls of one side. `balls` are the balls
@@ -37,6 +77,7 @@ pub fn power_shape(power: &PowerDiagram, balls: &[Ball], sides: &[Side], side: S
             *n = shape.ids.len() as u32;
             shape.ids.push(b as u32);
             shape.balls.push(balls[b]);
+            shape.sides.push(side);
         }
     }
     let of = |v: u32| {

@@ -1,0 +1,18 @@
+//! The medial axis as labelled balls: simplified, and written as a power
+//! shape again (section 7.3 of the paper).
+//!
+//! [`LabelledBalls`] holds balls of both sides with their power diagram,
+//! whether they come from a reconstruction or from a file. [`simplify`] takes
+//! balls out and makes the diagram of those that stay, with the old labels.
+//! Files of other programs hold inner balls only: [`dual`] then says which
+//! simplices there are, by the union of the balls alone.
+
+mod dual;
+mod estimate;
+mod labelled;
+mod options;
+mod simplify;
+
+pub use labelled::LabelledBalls;
+pub use options::SimplifyOptions;
+pub use simplify::{simplify, Simplified, SimplifyReport};

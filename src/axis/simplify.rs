@@ -1,0 +1,188 @@
+//! Simplification of a medial axis (section 7.3 of the paper): unstable balls
+//! go, then redundant ones, then the power diagram of those that stay is made
+//! with the old labels.
+//!
+//! With [`SimplifyOptions::keep_topology`] what goes is checked by the exact
+//! Betti numbers of the shape before and after. Where they differ, the balls
+//! that were to go are tried by halves, along the curve on which they are
+//! numbered and so by places, until the part that makes the difference is small; the balls of that
+//! part stay.
+
+use super::{LabelledBalls, SimplifyOptions};
+use crate::context::{Context, Portion, Stage};
+use crate::error::Error;
+use crate::geom::Side;
+use crate::simplify::{betti, contained_balls, Betti};
+
+/// The most power diagrams that are made to find out which balls must stay.
+const TRIES: usize = 40;
+
+/// A simplified medial axis.
+#[derive(Clone, Debug)]
+pub struct Simplified {
+    /// The balls that stay, with their power diagram.
+    pub balls: LabelledBalls,
+    /// What was done.
+    pub report: SimplifyReport,
+}
+
+/// What simplifying a medial axis did.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct SimplifyReport {
+    /// Balls of the wanted side before.
+    pub before: usize,
+    /// Those that went as unstable.
+    pub unstable: usize,
+    /// Those that went as redundant.
+    pub redundant: usize,
+    /// Those that stay.
+    pub after: usize,
+    /// Balls of both sides that were to go and stay, since without them the
+    /// Betti numbers would change.
+    pub refused: usize,
+    /// The Betti numbers of the shape before; none where they were not asked
+    /// for.
+    pub betti_before: Option<Betti>,
+    /// The Betti numbers of the shape that stays.
+    pub betti_after: Option<Betti>,
+}
+
+/// Simplifies a medial axis. Balls of both sides are taken out by the same
+/// rules; the report counts those of `side`, whose shape is to be kept.
+///
+/// # Errors
+/// [`Error::Option`] for options out of range, [`Error::Cancelled`].
+///
+/// ```
+/// use powercrust::{axis::{simplify, LabelledBalls, SimplifyOptions}, reconstruct, Context, Options, Side};
+/// # let points: Vec<[f64; 3]> = (0..600).map(|k| {
+/// #     let (u, v) = (k as f64 * 0.0105, k as f64 * 2.4);
+/// #     let rho = 3.0 + v.cos();
+/// #     [rho * u.cos(), rho * u.sin(), v.sin()]
+/// # }).collect();
+/// let context = Context::default();
+/// let result = reconstruct(&points, &Options::default(), &context)?;
+/// let balls = LabelledBalls::of(result, &points);
+/// let options = SimplifyOptions { eps: Some(0.1), delta: Some(0.05), ..Default::default() };
+/// let simple = simplify(&balls, &options, Side::Inner, &context)?;
+/// assert!(simple.report.after < simple.report.before);
+/// assert_eq!(simple.report.betti_after, simple.report.betti_before);
+/// let shape = simple.balls.shape(Side::Inner);
+/// # assert_eq!(shape.balls.len(), simple.report.after);
+/// # Ok::<(), powercrust::Error>(())
+/// ```
+pub fn simplify(
+    balls: &LabelledBalls,
+    options: &SimplifyOptions,
+    side: Side,
+    context: &Context,
+) -> Result<Simplified, Error> {
+    options.validate()?;
+    context.install(|| run(balls, options, side, context))
+}
+
+fn run(
+    balls: &LabelledBalls,
+    options: &SimplifyOptions,
+    side: Side,
+    context: &Context,
+) -> Result<Simplified, Error> {
+    let part = |percent| Portion {
+        context,
+        stage: Stage::Simplify,
+        percent,
+    };
+    let of_side = |keep: &[bool]| {
+        let both = keep.iter().zip(&balls.sides);
+        both.filter(|(&keep, &s)| keep && s == side).count()
+    };
+    let mut keep = balls.visible();
+    let mut report = SimplifyReport {
+        before: of_side(&keep),
+        ..SimplifyReport::default()
+    };
+    let wanted = options
+        .keep_topology
+        .then(|| betti(&balls.complex(side).simplices()));
+    report.betti_before = wanted;
+    let mut guard = Guard {
+        balls,
+        side,
+        wanted,
+        tries: TRIES,
+        refused: 0,
+        context,
+    };
+    let unstable: Vec<u32> = (0..keep.len() as u32)
+        .filter(|&b| keep[b as usize] && goes(balls, options, b))
+        .collect();
+    guard.take_out(&unstable, &mut keep)?;
+    let left = of_side(&keep);
+    report.unstable = report.before - left;
+    if let Some(delta) = options.delta {
+        let graph = balls.neighbours(&part([10, 20]))?;
+        let alike = |a: u32, b: u32| balls.sides[a as usize] == balls.sides[b as usize];
+        let mut redundant =
+            contained_balls(&balls.balls, &keep, &alike, &graph, delta, &part([20, 50]))?;
+        redundant.sort_unstable();
+        guard.take_out(&redundant, &mut keep)?;
+    }
+    report.after = of_side(&keep);
+    report.redundant = left - report.after;
+    report.refused = guard.refused;
+    let kept = balls.select(&keep, context)?;
+    report.betti_after = wanted.map(|_| betti(&kept.complex(side).simplices()));
+    Ok(Simplified {
+        balls: kept,
+        report,
+    })
+}
+
+/// Whether a ball is to go for what its samples span.
+fn goes(balls: &LabelledBalls, options: &SimplifyOptions, b: u32) -> bool {
+    let contact = &balls.contacts[b as usize];
+    options.eps.is_some_and(|eps| contact.diameter <= eps)
+}
+
+/// Takes balls out as long as the Betti numbers stay.
+struct Guard<'a> {
+    balls: &'a LabelledBalls,
+    side: Side,
+    /// `None`: whatever they become.
+    wanted: Option<Betti>,
+    /// Diagrams that may still be made.
+    tries: usize,
+    refused: usize,
+    context: &'a Context<'a>,
+}
+
+impl Guard<'_> {
+    fn take_out(&mut self, out: &[u32], keep: &mut [bool]) -> Result<(), Error> {
+        if out.is_empty() {
+            return Ok(());
+        }
+        for &b in out {
+            keep[b as usize] = false;
+        }
+        let Some(wanted) = self.wanted else {
+            return Ok(());
+        };
+        if self.tries > 0 {
+            self.tries -= 1;
+            let shape = self.balls.complex_of(keep, self.side, self.context)?;
+            if betti(&shape.simplices()) == wanted {
+                return Ok(());
+            }
+        }
+        for &b in out {
+            keep[b as usize] = true;
+        }
+        if out.len() == 1 || self.tries == 0 {
+            self.refused += out.len();
+            return Ok(());
+        }
+        let (first, second) = out.split_at(out.len() / 2);
+        self.take_out(first, keep)?;
+        self.take_out(second, keep)
+    }
+}
