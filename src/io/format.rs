@@ -227,4 +227,42 @@ impl AxisFormat {
     pub fn extensions() -> impl Iterator<Item = &'static str> {
         AXIS.iter().map(|&(e, _)| e)
     }
+
+    /// The axis format a file without a name has; `None` where nothing in it
+    /// says that it holds balls.
+    pub fn sniff(bytes: &[u8]) -> Option<AxisFormat> {
+        let bytes = scan::without_bom(bytes).trim_ascii_start();
+        if bytes.starts_with(b"{") {
+            return Some(AxisFormat::Json);
+        }
+        let head = &bytes[..bytes.len().min(1 << 14)];
+        let lines = || head.split(|&b| b == b'\n').map(<[u8]>::trim_ascii);
+        let words = |line: &'_ [u8]| -> Vec<Vec<u8>> {
+            let blank = |b: &u8| b.is_ascii_whitespace();
+            let words = line.split(blank).filter(|w| !w.is_empty());
+            words.map(<[u8]>::to_vec).collect()
+        };
+        if head.starts_with(b"ply") {
+            let radius = lines()
+                .take_while(|line| *line != b"end_header")
+                .any(|line| line.starts_with(b"property") && line.ends_with(b" radius"));
+            return radius.then_some(AxisFormat::Ply);
+        }
+        let mut told = lines().filter(|line| !line.is_empty() && line[0] != b'#');
+        let counts = words(told.next()?);
+        let first = words(told.next()?);
+        let is_count = |w: &Vec<u8>| w.iter().all(u8::is_ascii_digit);
+        let ma = counts.len() == 3 && counts.iter().all(is_count);
+        (ma && first.first().is_some_and(|w| w == b"v")).then_some(AxisFormat::Ma)
+    }
+
+    /// A name for people, in capitals.
+    pub fn name(self) -> &'static str {
+        match self {
+            AxisFormat::Ma => "MA",
+            AxisFormat::Ply => "PLY",
+            AxisFormat::Obj => "OBJ",
+            AxisFormat::Json => "JSON",
+        }
+    }
 }

@@ -4,7 +4,9 @@ use super::attributes::{Attribute, AttributeValues, MeshAttributes, WriteOptions
 use super::buffer::Buffer;
 use super::error::{Place, ReadError, WriteError};
 use super::sink::{check_count, check_finite, FaceSink};
+use crate::geom::Ball;
 use crate::mesh::PolygonMesh;
+use crate::simplify::{Contact, Touching};
 use crate::surface::{PowerShape, NONE};
 use serde::de::{Deserialize, DeserializeOwned, DeserializeSeed, Deserializer, SeqAccess, Visitor};
 use std::fmt;
@@ -88,6 +90,16 @@ struct AxisFile {
     triangles: Vec<[u32; 3]>,
     #[serde(default)]
     tetrahedra: Vec<[u32; 4]>,
+    #[serde(default)]
+    sides: Vec<u8>,
+    #[serde(default)]
+    contacts: Vec<[f64; 3]>,
+    #[serde(default)]
+    touching: Corners,
+    #[serde(default)]
+    others: Vec<[f64; 4]>,
+    #[serde(default)]
+    other_contacts: Vec<[f64; 3]>,
 }
 
 fn parse<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, ReadError> {
@@ -134,13 +146,46 @@ pub fn read_axis(bytes: &[u8]) -> Result<PowerShape, ReadError> {
         check_finite(&[[x, y, z]], |_| place)?;
         super::ply::ball([x, y, z], r, place)
     };
-    let balls = file.balls.iter().enumerate().map(ball);
+    let balls = |list: &[[f64; 4]]| -> Result<Vec<Ball>, ReadError> {
+        list.iter().enumerate().map(ball).collect()
+    };
+    let contact =
+        |(i, numbers): (usize, &[f64; 3])| super::axis::contact(*numbers, Place::Record(i as u64));
+    let contacts = |list: &[[f64; 3]]| -> Result<Vec<Contact>, ReadError> {
+        list.iter().enumerate().map(contact).collect()
+    };
+    let side = |(i, label): (usize, &u8)| super::ply::side(f64::from(*label), i);
+    let mut touching = Touching::default();
+    if !file.touching.ends.is_empty() {
+        touching.starts = vec![0];
+        touching
+            .starts
+            .extend(file.touching.ends.iter().map(|&e| e as u32));
+        for &point in &file.touching.indices {
+            touching
+                .samples
+                .push(u32::try_from(point).map_err(|_| ReadError::Malformed {
+                    place: Place::Record(0),
+                    what: format!("touching: {point} is no number of a point"),
+                })?);
+        }
+    }
     Ok(PowerShape {
-        balls: balls.collect::<Result<_, _>>()?,
+        balls: balls(&file.balls)?,
         ids: file.ids,
         edges: file.edges,
         triangles: file.triangles,
         tetrahedra: file.tetrahedra,
+        sides: file
+            .sides
+            .iter()
+            .enumerate()
+            .map(side)
+            .collect::<Result<_, _>>()?,
+        contacts: contacts(&file.contacts)?,
+        touching,
+        others: balls(&file.others)?,
+        other_contacts: contacts(&file.other_contacts)?,
     })
 }
 
@@ -274,6 +319,43 @@ pub fn write_axis<W: Write>(
     list(&mut out, "tetrahedra", shape.tetrahedra.iter(), |o, t| {
         indices(o, t)
     })?;
+    if !shape.sides.is_empty() {
+        out.text(",\n");
+        list(&mut out, "sides", shape.sides.iter(), |o, &s| {
+            o.integer(s as i64)
+        })?;
+    }
+    contacts(&mut out, "contacts", &shape.contacts)?;
+    if !shape.touching.starts.is_empty() {
+        out.text(",\n");
+        let balls = 0..shape.balls.len() as u32;
+        list(&mut out, "touching", balls, |o, b| {
+            indices(o, shape.touching.at(b))
+        })?;
+    }
+    if !shape.others.is_empty() {
+        out.text(",\n");
+        list(&mut out, "others", shape.others.iter(), |o, b| {
+            let [x, y, z] = b.centre;
+            reals(o, &[x, y, z, b.radius]);
+        })?;
+    }
+    contacts(&mut out, "other_contacts", &shape.other_contacts)?;
     out.text("}\n");
     out.finish()
+}
+
+/// The diameter, circumradius and spacing of the samples on each ball.
+fn contacts<W: Write>(
+    out: &mut Buffer<W>,
+    name: &str,
+    contacts: &[Contact],
+) -> Result<(), WriteError> {
+    if contacts.is_empty() {
+        return Ok(());
+    }
+    out.text(",\n");
+    list(out, name, contacts.iter(), |o, c| {
+        reals(o, &[c.diameter, c.circumradius, c.spacing])
+    })
 }

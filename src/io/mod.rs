@@ -139,8 +139,9 @@ pub fn as_written(format: MeshFormat, vertices: &[Point], options: &WriteOptions
 
 /// Writes a medial axis.
 ///
-/// `.ma` and OBJ hold no tetrahedra; OBJ holds no radii either. Radii are
-/// written as they are.
+/// Which input points a ball touches goes into JSON only; what else the shape
+/// has goes into all formats but OBJ, which holds no radii and no
+/// tetrahedra.
 ///
 /// # Errors
 /// As [`write_mesh`].

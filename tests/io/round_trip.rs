@@ -2,6 +2,7 @@
 
 use super::{AXES, MESHES, PLAIN};
 use powercrust::io::*;
+use powercrust::simplify::{Contact, Touching};
 use powercrust::surface::NONE;
 use powercrust::{Ball, PolarBall, PolygonMesh, PowerShape, Side};
 
@@ -265,6 +266,22 @@ pub fn axis() -> PowerShape {
         edges: vec![[0, 1], [0, 4], [2, 3]],
         triangles: vec![[0, 1, 2], [1, 2, 3]],
         tetrahedra: vec![[0, 1, 2, 3]],
+        sides: vec![Side::Outer; 5],
+        contacts: (0..5).map(|k| contact(f64::from(k) * 0.1)).collect(),
+        touching: Touching {
+            starts: vec![0, 2, 2, 3, 3, 5],
+            samples: vec![4, 8, 15, 16, 23],
+        },
+        others: (3..6).map(ball).collect(),
+        other_contacts: (1..4).map(|k| contact(f64::from(k) / 3.0)).collect(),
+    }
+}
+
+fn contact(length: f64) -> Contact {
+    Contact {
+        diameter: length,
+        circumradius: 0.5 * length,
+        spacing: 0.1,
     }
 }
 
@@ -281,15 +298,15 @@ fn axes_come_back_the_same() {
         for format in AXES {
             let file = written_axis(format, &shape, &options);
             let back = read_axis(&file, format).unwrap();
-            assert_eq!(back.balls, shape.balls);
-            assert_eq!(back.edges, shape.edges);
-            assert_eq!(back.triangles, shape.triangles);
+            let mut expected = shape.clone();
             if format == AxisFormat::Ma {
-                assert_eq!(back.ids, [0, 1, 2, 3, 4]);
-            } else {
-                assert_eq!(back.ids, shape.ids);
-                assert_eq!(back.tetrahedra, shape.tetrahedra);
+                expected.ids = vec![0, 1, 2, 3, 4];
             }
+            if format != AxisFormat::Json {
+                expected.touching = Touching::default();
+            }
+            assert_eq!(back, expected);
+            assert_eq!(AxisFormat::sniff(&file), Some(format));
         }
     }
     let file = written_axis(AxisFormat::Obj, &shape, &WriteOptions::default());
@@ -317,6 +334,14 @@ fn axes_come_back_the_same() {
         ),
         ("1 0 0\nx 1 2 3 4\n", "expected v, e or f"),
         ("9999999999999 0 0\n", "at most"),
+        ("1 0 0\nv 1 2 3 4\nside left\n", "expected inner or outer"),
+        ("1 0 0\nv 1 2 3 4\ntet 0 0 0 1\n", "line 3: index 1"),
+        ("1 0 0\nv 1 2 3 4\nspan 0 1 -1 0\n", "the length -1"),
+        (
+            "1 0 0\nv 1 2 3 4\nspan 0 1\n",
+            "a line `span` has 4 numbers",
+        ),
+        ("1 0 0\nv 1 2 3 4\nother 1 2 nan 4\n", "line 3"),
     ] {
         let error = read_axis(file.as_bytes(), AxisFormat::Ma)
             .unwrap_err()

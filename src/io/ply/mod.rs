@@ -12,6 +12,7 @@ mod write;
 
 pub use write::{write_axis, write_balls, write_mesh};
 
+use super::axis::contact;
 use super::cloud::{Cloud, Parts, ReadOptions};
 use super::error::{Place, ReadError};
 use super::format::CloudFormat;
@@ -19,6 +20,7 @@ use super::sink::{check_finite, FaceSink};
 use crate::geom::{Ball, Side};
 use crate::mesh::PolygonMesh;
 use crate::pipeline::PolarBall;
+use crate::simplify::{Contact, Touching};
 use crate::surface::{PowerShape, NONE};
 use body::{Body, Records, Skip};
 use cloud::{VertexData, Vertices};
@@ -32,6 +34,8 @@ struct Contents {
     has_faces: bool,
     edges: Vec<[u32; 2]>,
     tetrahedra: Vec<[u32; 4]>,
+    /// Balls of the other side of a medial axis.
+    others: Option<VertexData>,
     comments: usize,
     left_over: usize,
     ascii: bool,
@@ -51,6 +55,7 @@ fn read(bytes: &[u8], faces: FaceSink, all: bool) -> Result<Contents, ReadError>
     }
     let mut body = Body::new(&header);
     let mut vertices = None;
+    let mut others = None;
     let mut faces = Faces {
         sink: faces,
         limit,
@@ -65,6 +70,10 @@ fn read(bytes: &[u8], faces: FaceSink, all: bool) -> Result<Contents, ReadError>
             let mut out = Vertices::new(element, &body, all)?;
             body.read(element, &mut out)?;
             vertices = Some(out);
+        } else if all && element.is("other") && element.find(&["radius"]).is_some() {
+            let mut out = Vertices::new(element, &body, all)?;
+            body.read(element, &mut out)?;
+            others = Some(out.finish());
         } else if element.is("face") || strips {
             faces.list = list_of(element);
             faces.strips = strips;
@@ -92,6 +101,7 @@ fn read(bytes: &[u8], faces: FaceSink, all: bool) -> Result<Contents, ReadError>
         has_faces: header.element("face").is_some() || header.element("tristrips").is_some(),
         edges: edges.finish("edge")?,
         tetrahedra: tetrahedra.finish("tetrahedron")?,
+        others,
         comments: header.comments,
         left_over: body.left_over(),
         ascii: header.encoding == Encoding::Ascii,
@@ -150,15 +160,44 @@ fn take(data: &mut VertexData, name: &str) -> Option<Vec<f64>> {
 fn balls_of(contents: &mut Contents) -> Result<Vec<Ball>, ReadError> {
     let place_of = Contents::place_of(contents.ascii, contents.first_invalid);
     check_finite(&contents.vertices.points, place_of)?;
-    let Some(radii) = take(&mut contents.vertices, "radius") else {
+    balls_in(&mut contents.vertices)
+}
+
+fn balls_in(data: &mut VertexData) -> Result<Vec<Ball>, ReadError> {
+    check_finite(&data.points, |i| Place::Record(i as u64))?;
+    let Some(radii) = take(data, "radius") else {
         return Err(ReadError::Missing {
             what: "property radius in the vertex element of this PLY file".into(),
         });
     };
-    let balls = contents.vertices.points.iter().zip(radii).enumerate();
+    let balls = data.points.iter().zip(radii).enumerate();
     balls
         .map(|(i, (&centre, radius))| ball(centre, radius, Place::Record(i as u64)))
         .collect()
+}
+
+/// What the samples on balls span, where all three numbers are there.
+fn contacts_in(data: &mut VertexData) -> Result<Vec<Contact>, ReadError> {
+    let columns = ["diameter", "circumradius", "spacing"].map(|name| take(data, name));
+    let [Some(diameter), Some(circumradius), Some(spacing)] = columns else {
+        return Ok(Vec::new());
+    };
+    let rows = diameter.into_iter().zip(circumradius).zip(spacing);
+    rows.enumerate()
+        .map(|(i, ((d, c), h))| contact([d, c, h], Place::Record(i as u64)))
+        .collect()
+}
+
+/// The side that a label names.
+pub(super) fn side(label: f64, record: usize) -> Result<Side, ReadError> {
+    match label {
+        0.0 => Ok(Side::Inner),
+        1.0 => Ok(Side::Outer),
+        _ => Err(ReadError::Malformed {
+            place: Place::Record(record as u64),
+            what: format!("the label {label}: 0 is inner, 1 is outer"),
+        }),
+    }
 }
 
 /// A ball with a radius that can be one.
@@ -193,12 +232,26 @@ pub fn read_axis(bytes: &[u8]) -> Result<PowerShape, ReadError> {
         };
         triangles.push([a, b, c]);
     }
+    let labels = take(&mut contents.vertices, "label").unwrap_or_default();
+    let sides = labels.iter().enumerate().map(|(i, &label)| side(label, i));
+    let sides = sides.collect::<Result<_, _>>()?;
+    let mut others = Vec::new();
+    let mut other_contacts = Vec::new();
+    if let Some(data) = &mut contents.others {
+        others = balls_in(data)?;
+        other_contacts = contacts_in(data)?;
+    }
     Ok(PowerShape {
         balls,
         ids,
         edges: contents.edges,
         triangles,
         tetrahedra: contents.tetrahedra,
+        sides,
+        contacts: contacts_in(&mut contents.vertices)?,
+        touching: Touching::default(),
+        others,
+        other_contacts,
     })
 }
 
@@ -214,16 +267,7 @@ pub fn read_balls(bytes: &[u8]) -> Result<Vec<PolarBall>, ReadError> {
     let samples = column("sample")?;
     let rows = balls.into_iter().zip(labels).zip(samples).enumerate();
     rows.map(|(i, ((ball, label), sample))| {
-        let side = match label {
-            0.0 => Side::Inner,
-            1.0 => Side::Outer,
-            _ => {
-                return Err(ReadError::Malformed {
-                    place: Place::Record(i as u64),
-                    what: format!("the label {label}: 0 is inner, 1 is outer"),
-                })
-            }
-        };
+        let side = side(label, i)?;
         let sample = if sample < 0.0 { NONE } else { sample as u32 };
         Ok(PolarBall { ball, side, sample })
     })

@@ -3,9 +3,10 @@
 use super::super::attributes::{Attribute, AttributeValues, MeshAttributes, WriteOptions};
 use super::super::buffer::{comment_lines, Buffer};
 use super::super::error::WriteError;
-use crate::geom::Side;
+use crate::geom::{Ball, Side};
 use crate::mesh::PolygonMesh;
 use crate::pipeline::PolarBall;
+use crate::simplify::Contact;
 use crate::surface::{PowerShape, NONE};
 use std::io::Write;
 
@@ -106,6 +107,21 @@ impl<'w, W: Write> Ply<'w, W> {
             self.out.bytes.extend_from_slice(&bytes);
         } else {
             self.out.bytes.extend_from_slice(&value.to_le_bytes());
+        }
+    }
+
+    fn ball(&mut self, ball: &Ball) {
+        for c in ball.centre {
+            self.real(c);
+        }
+        self.real(ball.radius);
+    }
+
+    fn contact(&mut self, contact: Option<&Contact>) {
+        if let Some(c) = contact {
+            for length in [c.diameter, c.circumradius, c.spacing] {
+                self.real(length);
+            }
         }
     }
 
@@ -269,19 +285,28 @@ pub fn write_mesh<W: Write>(
     ply.out.finish()
 }
 
-/// Vertices with radius and ball id, edges, triangles, tetrahedra.
+/// Vertices with radius, ball id, label and what the samples on them span,
+/// edges, triangles, tetrahedra, balls of the other side.
 pub fn write_axis<W: Write>(
     writer: &mut W,
     shape: &PowerShape,
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
-    let centres: Vec<_> = shape.balls.iter().map(|b| b.centre).collect();
+    let all = shape.balls.iter().chain(&shape.others);
+    let centres: Vec<_> = all.map(|b| b.centre).collect();
+    let span = ["diameter", "circumradius", "spacing"];
     check_range(&centres, options)?;
     let mut ply = Ply::new(writer, options);
     ply.element("vertex", shape.balls.len());
     ply.properties(ply.real_kind(), &["x", "y", "z", "radius"]);
     if !shape.ids.is_empty() {
         ply.properties("uint", &["ball"]);
+    }
+    if !shape.sides.is_empty() {
+        ply.properties("uchar", &["label"]);
+    }
+    if !shape.contacts.is_empty() {
+        ply.properties(ply.real_kind(), &span);
     }
     ply.element("edge", shape.edges.len());
     ply.properties("int", &["vertex1", "vertex2"]);
@@ -291,15 +316,23 @@ pub fn write_axis<W: Write>(
         ply.element("tetrahedron", shape.tetrahedra.len());
         ply.properties("list uchar int", &["vertex_indices"]);
     }
+    if !shape.others.is_empty() {
+        ply.element("other", shape.others.len());
+        ply.properties(ply.real_kind(), &["x", "y", "z", "radius"]);
+        if !shape.other_contacts.is_empty() {
+            ply.properties(ply.real_kind(), &span);
+        }
+    }
     ply.end_header();
     for (i, ball) in shape.balls.iter().enumerate() {
-        for c in ball.centre {
-            ply.real(c);
-        }
-        ply.real(ball.radius);
+        ply.ball(ball);
         if let Some(&id) = shape.ids.get(i) {
             ply.index(id);
         }
+        if let Some(&side) = shape.sides.get(i) {
+            ply.byte(side as u8);
+        }
+        ply.contact(shape.contacts.get(i));
         ply.end()?;
     }
     for &[a, b] in &shape.edges {
@@ -314,6 +347,11 @@ pub fn write_axis<W: Write>(
         for &c in corners {
             ply.index(c);
         }
+        ply.end()?;
+    }
+    for (i, ball) in shape.others.iter().enumerate() {
+        ply.ball(ball);
+        ply.contact(shape.other_contacts.get(i));
         ply.end()?;
     }
     ply.out.finish()
