@@ -46,8 +46,9 @@ const ROWS: [(&[&str], &str); 13] = [
     ),
     (&["pipeline"], "the stages in order"),
     (
-        &["attributes"],
-        "what a result's vertices and faces inherit from points and balls",
+        &["attributes", "axis"],
+        "what a result's vertices and faces inherit from points and balls; \
+         what is left of its medial axis",
     ),
     (
         &["io"],

@@ -10,6 +10,7 @@ use powercrust::surface::{Keep, MinVolume};
 use powercrust::Options;
 
 use super::formats::dotted;
+use super::simplify_args::{self, SimplifyMat};
 use super::wanted::{self, Wanted};
 
 const EXAMPLES: &str = "\
@@ -19,6 +20,8 @@ Examples:
   powercrust points.ply --lambda 0.3 -o crust.ply
                                                 a scan with some noise
   powercrust points.xyz --mat axis.ma           the medial axis alone
+  powercrust simplify-mat axis.ma --eps 1% -o simple.ma
+                                                its stable part
   cat points.xyz | powercrust - -o - --output-format obj > crust.obj
   powercrust check crust.ply                    is a mesh fit for use?";
 
@@ -89,12 +92,9 @@ pub enum Command {
     /// Say whether a mesh is closed, manifold, oriented and free of crossings.
     #[command(after_help = CHECK_EXAMPLES, after_long_help = format!("{CHECK_EXAMPLES}\n\n{EXIT_CODES}"))]
     Check(Check),
-    /// Simplify a medial axis (not available in this version).
-    #[command(hide = true, disable_help_flag = true)]
-    SimplifyMat {
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        rest: Vec<std::ffi::OsString>,
-    },
+    /// Simplify a medial axis.
+    #[command(after_help = simplify_args::EXAMPLES, after_long_help = format!("{}\n\n{EXIT_CODES}", simplify_args::EXAMPLES))]
+    SimplifyMat(SimplifyMat),
 }
 
 const FILES: &str = "Input and output";
@@ -241,6 +241,13 @@ pub struct Reconstruct {
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub outer_mat: Option<PathBuf>,
 
+    /// Collapse the flat tetrahedra of the medial axes.
+    ///
+    /// What is left has balls, edges and triangles, and the same parts,
+    /// tunnels and voids.
+    #[arg(long, help_heading = EXTRA)]
+    pub thin: bool,
+
     /// Write all polar balls with radius and side, as PLY.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub poles: Option<PathBuf>,
@@ -353,7 +360,7 @@ fn yes_or_no(text: &str) -> Result<bool, String> {
 
 /// Reads a finite number. (clap's own reading of negative numbers refuses
 /// `-1e-3` and `-.5`, hence `allow_hyphen_values` above.)
-fn real(text: &str) -> Result<f64, String> {
+pub fn real(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ => Err("expected a number".to_owned()),

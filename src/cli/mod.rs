@@ -14,6 +14,8 @@ mod product;
 mod report;
 mod run;
 mod show;
+mod simplify_args;
+mod simplify_mat;
 mod stop;
 mod wanted;
 
@@ -24,7 +26,7 @@ use clap::error::ErrorKind;
 use clap::Parser;
 
 use args::{Cli, Command};
-use fail::{Code, Failure};
+use fail::Code;
 
 /// Everything between the arguments and the exit code.
 pub fn main() -> ExitCode {
@@ -38,14 +40,12 @@ fn dispatch(cli: Cli) -> ExitCode {
     stop::install();
     let json = match &cli.command {
         Some(Command::Check(check)) => check.json,
+        Some(Command::SimplifyMat(args)) => args.json,
         _ => cli.reconstruct.json,
     };
     let done = match (cli.command, cli.generate) {
         (Some(Command::Check(args)), _) => check::check(&args),
-        (Some(Command::SimplifyMat { .. }), _) => Err(Failure::usage(
-            "simplify-mat is not available in this version",
-        )
-        .hint("powercrust POINTS --mat axis.ma writes the axis as it is")),
+        (Some(Command::SimplifyMat(args)), _) => simplify_mat::simplify_mat(&args),
         (None, Some(what)) => generate::generate(what),
         (None, None) => plan::Plan::new(cli.reconstruct).and_then(|plan| run::run(&plan)),
     };

@@ -41,6 +41,8 @@ pub struct Plan {
     pub mesh: Option<Out<MeshFormat>>,
     pub inner_axis: Option<Out<AxisFormat>>,
     pub outer_axis: Option<Out<AxisFormat>>,
+    /// Collapse the flat tetrahedra of the axes.
+    pub thin: bool,
     pub poles: Option<Out<()>>,
     pub stats: Option<Out<()>>,
     pub json: bool,
@@ -92,6 +94,7 @@ impl Plan {
             })?,
             inner_axis: out(&args.mat, |path| axis_format(path, "--mat"))?,
             outer_axis: out(&args.outer_mat, |path| axis_format(path, "--outer-mat"))?,
+            thin: args.thin,
             poles: out(&args.poles, poles_format)?,
             stats: out(&args.stats, |_| Ok(()))?,
             write: WriteOptions {
@@ -224,6 +227,11 @@ impl Plan {
                 "--attributes",
                 "the mesh, which needs -o",
             ),
+            (
+                args.thin && axes.is_empty(),
+                "--thin",
+                "medial axes, which need --mat or --outer-mat",
+            ),
             (args.ascii && !ply && !stl, "--ascii", "PLY and STL files"),
             (args.f32 && !single, "--f32", "PLY, STL and GLB files"),
             (
@@ -297,7 +305,8 @@ fn comments(options: &Options) -> Vec<String> {
     ]
 }
 
-fn out<F>(
+/// Judges where a result goes and in which format.
+pub fn out<F>(
     path: &Option<PathBuf>,
     format: impl FnOnce(&Path) -> Result<F, Failure>,
 ) -> Result<Option<Out<F>>, Failure> {
@@ -339,7 +348,7 @@ pub fn check_input(path: &Path) -> Result<(), Failure> {
 }
 
 /// The place a path names, whether or not there is a file yet.
-fn identity(path: &Path) -> PathBuf {
+pub fn identity(path: &Path) -> PathBuf {
     if let Ok(place) = fs::canonicalize(path) {
         return place;
     }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use powercrust::io::{as_written, MeshFormat, ReadReport};
+use powercrust::io::{as_written, Cloud, MeshFormat};
 use powercrust::mesh::{check, CheckOptions, Report as Findings};
 use powercrust::surface::ShellFilter;
 use powercrust::{Cancelled, Context, Faces, PowerShape, Reconstruction, Side};
@@ -56,13 +56,24 @@ fn known_faults(crossings_left: usize, closed: bool) -> Option<String> {
     (!faults.is_empty()).then(|| faults.join("; "))
 }
 
+/// A medial axis as counts.
+pub fn in_numbers(shape: &PowerShape) -> Value {
+    json!({
+        "balls": shape.balls.len(),
+        "edges": shape.edges.len(),
+        "triangles": shape.triangles.len(),
+        "tetrahedra": shape.tetrahedra.len(),
+        "betti": shape.betti(),
+    })
+}
+
 impl Report {
     /// Judges the mesh and gathers what else there is to tell.
     pub fn new(
         plan: &Plan,
         result: &Reconstruction,
         product: &Product,
-        input: ReadReport,
+        cloud: &Cloud,
         context: &Context,
     ) -> Result<Report, Cancelled> {
         // Closed, manifold, oriented: cheap and always looked at. The search
@@ -82,12 +93,20 @@ impl Report {
                 check(&written, &options, context)?
             }
         };
-        let shape = |wanted: bool, side| wanted.then(|| result.power_shape(side));
+        let shape = |wanted: bool, side| {
+            wanted.then(|| {
+                let mut shape = result.axis(side, &cloud.points);
+                if plan.thin {
+                    shape.thin();
+                }
+                shape
+            })
+        };
         let inner_axis = shape(plan.inner_axis.is_some(), Side::Inner);
         let outer_axis = shape(plan.outer_axis.is_some(), Side::Outer);
         let mut head = json!({
             "powercrust": env!("CARGO_PKG_VERSION"),
-            "input": { "file": name(&plan.input), "read": input },
+            "input": { "file": name(&plan.input), "read": cloud.report },
             "mesh": {
                 "vertices": findings.vertices,
                 "faces": findings.faces,
@@ -120,6 +139,12 @@ impl Report {
             head["reduced"] = json!(reduced);
         }
         head["peak_memory_bytes"] = json!(powercrust::memory::peak());
+        // Betti numbers take time, so they are found where they are told.
+        for (key, shape) in [("inner_axis", &inner_axis), ("outer_axis", &outer_axis)] {
+            if let Some(shape) = shape.as_ref().filter(|_| plan.json || plan.stats.is_some()) {
+                head[key] = in_numbers(shape);
+            }
+        }
         let mut stats = head.clone();
         stats["stats"] = json!(result.stats);
         let mut summary = head;
@@ -127,16 +152,6 @@ impl Report {
         summary["options"] = json!(plan.options);
         summary["samples"] = json!(result.stats.samples);
         summary["duplicates"] = json!(result.stats.duplicates);
-        for (key, shape) in [("inner_axis", &inner_axis), ("outer_axis", &outer_axis)] {
-            if let Some(shape) = shape {
-                summary[key] = json!({
-                    "balls": shape.balls.len(),
-                    "edges": shape.edges.len(),
-                    "triangles": shape.triangles.len(),
-                    "tetrahedra": shape.tetrahedra.len(),
-                });
-            }
-        }
         Ok(Report {
             rounded: rounded && !findings.is_watertight(),
             findings,

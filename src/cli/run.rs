@@ -55,7 +55,12 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         Talk::Verbose,
         format_args!("this will take {}", in_words(&estimate)),
     );
-    enough_memory(plan, &estimate)?;
+    let limit = match plan.max_memory {
+        Some(limit) => (Some(limit), "--max-memory"),
+        None if plan.dry_run => (None, ""),
+        None => (of_machine(), "the memory of this machine,"),
+    };
+    enough_memory(&plan.input, &estimate, limit)?;
     if plan.dry_run {
         tell_estimate(plan, &cloud, &estimate)?;
         return Ok(ExitCode::SUCCESS);
@@ -72,14 +77,14 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     };
     let outcome = powercrust::reconstruct(&cloud.points, &options, &context);
     let outcome = outcome
-        .map_err(|error| unsolved(plan, error))
+        .map_err(|error| unsolved(&plan.input, plan.options.lambda.is_some(), error))
         .and_then(|mut result| {
             // Only medial axes are made of the cells.
             if plan.inner_axis.is_none() && plan.outer_axis.is_none() {
                 result.power.complex = Complex::default();
             }
             let product = product::make(plan, &cloud, &mut result, &context)?;
-            let report = Report::new(plan, &result, &product, cloud.report, &context)
+            let report = Report::new(plan, &result, &product, &cloud, &context)
                 .map_err(|_| Failure::interrupted())?;
             Ok((result, product, report))
         });
@@ -108,19 +113,18 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
 
 /// An error rather than a process that the system ends: what a run is likely
 /// to need must not be more than was allowed, or than the machine has.
-fn enough_memory(plan: &Plan, estimate: &Estimate) -> Result<(), Failure> {
-    let (limit, whose) = match plan.max_memory {
-        Some(limit) => (Some(limit), "--max-memory"),
-        None if plan.dry_run => (None, ""),
-        None => (of_machine(), "the memory of this machine,"),
-    };
+pub fn enough_memory(
+    input: &Path,
+    estimate: &Estimate,
+    (limit, whose): (Option<u64>, &str),
+) -> Result<(), Failure> {
     match limit.filter(|&limit| estimate.memory_bytes > limit) {
         None => Ok(()),
         Some(limit) => Err(Failure::new(
             Code::Unfit,
             format!(
                 "{}: this would take {}, more than {whose} {}",
-                name(&plan.input),
+                name(input),
                 in_words(estimate),
                 bytes(limit)
             ),
@@ -262,9 +266,10 @@ pub fn misread(
     }
 }
 
-/// An error of the library, with the exit code it calls for.
-fn unsolved(plan: &Plan, error: Error) -> Failure {
-    let unfit = Failure::new(Code::Unfit, format!("{}: {error}", name(&plan.input)));
+/// An error of the library, with the exit code it calls for; `filtered` says
+/// whether poles were dropped.
+pub fn unsolved(input: &Path, filtered: bool, error: Error) -> Failure {
+    let unfit = Failure::new(Code::Unfit, format!("{}: {error}", name(input)));
     match error {
         Error::Cancelled => Failure::interrupted(),
         Error::Option {
@@ -272,7 +277,7 @@ fn unsolved(plan: &Plan, error: Error) -> Failure {
             value,
             expected,
         } => out_of_range(name, value, expected),
-        Error::NothingInside { .. } if plan.options.lambda.is_some() => {
+        Error::NothingInside { .. } if filtered => {
             unfit.hint("the sampling may be too sparse for --lambda and --sharp: try without")
         }
         Error::NothingInside { .. } => {
@@ -334,7 +339,7 @@ fn write_results(
 
 /// Stages one file; what is no error of the disk is one of ours or of the
 /// format's limits.
-fn stage(
+pub fn stage(
     target: &Target,
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,

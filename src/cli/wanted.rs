@@ -102,6 +102,38 @@ pub fn min_volume(text: &str) -> Result<MinVolume, String> {
     }
 }
 
+/// A length, in the input's unit or as a share of the diagonal of its box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Length {
+    /// In the unit of the input.
+    Absolute(f64),
+    /// In hundredths of the diagonal.
+    Percent(f64),
+}
+
+impl Length {
+    /// The length in the unit of an input of this diagonal.
+    pub fn of(self, diagonal: f64) -> f64 {
+        match self {
+            Length::Absolute(length) => length,
+            Length::Percent(percent) => percent / 100.0 * diagonal,
+        }
+    }
+}
+
+/// Reads a length of at least 0, or a share of the diagonal with `%`.
+pub fn length(text: &str) -> Result<Length, String> {
+    let (number, share) = match text.strip_suffix('%') {
+        Some(number) => (number, true),
+        None => (text, false),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(v) if v >= 0.0 && v.is_finite() && share => Ok(Length::Percent(v)),
+        Ok(v) if v >= 0.0 && v.is_finite() => Ok(Length::Absolute(v)),
+        _ => Err("expected a length, or a share of the diagonal such as 1%".to_owned()),
+    }
+}
+
 /// Reads a factor above 1.
 pub fn reduce(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -167,6 +199,9 @@ mod tests {
         assert_eq!(min_volume("1%"), Ok(MinVolume::Share(0.01)));
         assert_eq!(min_volume("2.5"), Ok(MinVolume::Absolute(2.5)));
         assert!(min_volume("-1").is_err() && min_volume("101%").is_err());
+        assert_eq!(length("0.5"), Ok(Length::Absolute(0.5)));
+        assert_eq!(length("2%").map(|l| l.of(50.0)), Ok(1.0));
+        assert!(length("-1").is_err() && length("x%").is_err() && length("inf").is_err());
         assert_eq!(size("2G"), Ok(2 << 30));
         assert_eq!(size("1.5k"), Ok(1536));
         assert_eq!(size("100"), Ok(100));

@@ -1,0 +1,334 @@
+//! `powercrust simplify-mat`: the stable part of a medial axis.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use powercrust::axis::{simplify, LabelledBalls, SimplifyOptions, SimplifyReport};
+use powercrust::io::{
+    read_axis, read_cloud, write_axis, AxisFormat, CloudFormat, ReadOptions, WriteOptions,
+};
+use powercrust::memory::{estimate, of_machine};
+use powercrust::{Context, Error, Options, PowerShape, Side};
+use serde_json::json;
+
+use super::fail::{name, Failure};
+use super::formats::{axis_format, dotted, extension};
+use super::output::Target;
+use super::plan::{check_input, identity, out, out_of_range, Out};
+use super::report::in_numbers;
+use super::run::{enough_memory, misread, read_bytes, stage, unsolved};
+use super::show::{counted, Bar, Talk};
+use super::simplify_args::{SimplifyMat, WhichSide, DELTA_OF_EPS, EPS_PERCENT};
+use super::stop;
+use super::wanted::Length;
+
+/// What the input turned out to be.
+enum Input {
+    Axis(AxisFormat),
+    Points(CloudFormat),
+}
+
+pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
+    let start = Instant::now();
+    let talk = Talk::new(args.quiet, args.verbose);
+    let said = args.input_format.as_deref().map(named).transpose()?;
+    check_input(&args.input)?;
+    let target = place(args)?;
+    let options = pipeline_options(args)?;
+
+    let bytes = read_bytes(&args.input)?;
+    let input = said.or_else(|| by_name(&args.input, &bytes));
+    let input = input.unwrap_or_else(|| by_bytes(&bytes));
+    let bar = Bar::new(talk);
+    let context = Context {
+        threads: args.threads,
+        progress: &bar,
+    };
+    let outcome = balls(args, input, &bytes, &options, &context, talk).and_then(|(balls, side)| {
+        let how = lengths(args, balls.diagonal);
+        talk.at(Talk::Verbose, format_args!("options {}", json!(how)));
+        let simple = simplify(&balls, &how, side, &context)
+            .map_err(|error| unfit(&args.input, options.lambda.is_some(), error))?;
+        let mut shape = simple.balls.shape(side);
+        let thinned = if args.thin { shape.thin() } else { 0 };
+        Ok((how, side, simple.report, shape, thinned))
+    });
+    bar.clear();
+    drop(bytes);
+    let (how, side, report, mut shape, thinned) = outcome?;
+
+    if report.refused > 0 {
+        talk.at(
+            Talk::Plain,
+            format_args!(
+                "note: {} stayed that should go: without them the axis would have other parts, \
+                 tunnels or voids (--no-keep-topology takes them out)",
+                counted(report.refused, "ball", "balls")
+            ),
+        );
+    }
+    if let Some(out) = &target {
+        if args.bare {
+            shape = bare(shape);
+        }
+        let write = WriteOptions {
+            ascii: args.ascii,
+            digits: args.precision,
+            comments: vec![
+                format!("made by powercrust {}", env!("CARGO_PKG_VERSION")),
+                format!("options {}", json!(how)),
+            ],
+            ..WriteOptions::default()
+        };
+        stage(&out.target, &out.path, |mut w| {
+            write_axis(&mut w, out.format, &shape, &write)
+        })?
+        .publish()?;
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    let at = match &target {
+        Some(out) if out.target != Target::Stdout => out.path.display().to_string(),
+        Some(_) => "standard output".to_owned(),
+        None => name(&args.input),
+    };
+    talk.at(Talk::Plain, line(&at, &report, &shape, seconds));
+    if args.json {
+        let object = json!({
+            "ok": true,
+            "powercrust": env!("CARGO_PKG_VERSION"),
+            "input": { "file": name(&args.input) },
+            "side": if side == Side::Inner { "inner" } else { "outer" },
+            "options": how,
+            "simplified": report,
+            "thinned": thinned,
+            "axis": in_numbers(&shape),
+            "peak_memory_bytes": powercrust::memory::peak(),
+            "seconds": seconds,
+        });
+        let text = format!("{object:#}\n");
+        Target::Stdout.stage(|w| w.write_all(text.as_bytes()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn line(at: &str, report: &SimplifyReport, shape: &PowerShape, seconds: f64) -> String {
+    let mut parts = vec![
+        format!(
+            "{} of {}",
+            counted(report.after, "ball", "balls"),
+            counted(report.before, "ball", "balls")
+        ),
+        format!("{} unstable", counted(report.unstable, "ball", "balls")),
+        format!("{} redundant", counted(report.redundant, "ball", "balls")),
+        counted(shape.triangles.len(), "triangle", "triangles"),
+    ];
+    if let Some(betti) = report.betti_after {
+        parts.push(format!("Betti numbers {betti}"));
+    }
+    parts.push(format!("{seconds:.2} s"));
+    format!("{at}: {}", parts.join(", "))
+}
+
+/// Where the axis goes; not over the input, no two results on one stream.
+fn place(args: &SimplifyMat) -> Result<Option<Out<AxisFormat>>, Failure> {
+    if args.output.is_none() && !args.json {
+        return Err(Failure::usage("nowhere to write the axis: -o is missing").hint(
+            "powercrust simplify-mat axis.ma --eps 1% -o simple.ma (see powercrust simplify-mat --help)",
+        ));
+    }
+    let target = out(&args.output, |path| match args.output_format.as_deref() {
+        Some(said) => AxisFormat::from_extension(said).ok_or_else(|| {
+            Failure::usage(format!("--output-format {said}: unknown format"))
+                .hint(format!("known: {}", dotted(AxisFormat::extensions())))
+        }),
+        None if path.as_os_str() == "-" => Ok(AxisFormat::Ma),
+        None => axis_format(path, "-o"),
+    })?;
+    let idle = |flag: &str, to: &str| {
+        Failure::usage(format!("{flag} would have no effect: it applies to {to}"))
+            .hint(format!("leave {flag} out"))
+    };
+    let Some(out) = &target else {
+        return match (args.output_format.is_some(), args.bare) {
+            (true, _) => Err(idle("--output-format", "the axis, which needs -o")),
+            (_, true) => Err(idle("--bare", "the axis, which needs -o")),
+            _ => Ok(None),
+        };
+    };
+    let ply = out.format == AxisFormat::Ply;
+    if args.ascii && !ply {
+        return Err(idle("--ascii", "PLY files"));
+    }
+    if args.precision.is_some() && ply && !args.ascii {
+        return Err(idle("--precision", "text formats"));
+    }
+    if out.target == Target::Stdout {
+        if args.json {
+            return Err(
+                Failure::usage("more than one result would go to standard output")
+                    .hint("send one of -o - and --json to a file, or leave it out"),
+            );
+        }
+        if ply && !args.ascii && std::io::stdout().is_terminal() {
+            return Err(Failure::usage("a binary file would go to the terminal")
+                .hint("redirect it, or add --ascii"));
+        }
+    }
+    let is_input =
+        matches!(out.target, Target::File(_)) && identity(&out.path) == identity(&args.input);
+    if is_input {
+        return Err(Failure::usage(format!(
+            "{}: this is the input, it would be overwritten",
+            out.path.display()
+        ))
+        .hint("give the simplified axis a name of its own"));
+    }
+    Ok(target)
+}
+
+/// A format by its name: of an axis where there is one, else of points.
+fn named(said: &str) -> Result<Input, Failure> {
+    // OBJ has no radii: as an input it is points. PLY and JSON may be both.
+    let axis =
+        AxisFormat::from_extension(said).filter(|&f| f != AxisFormat::Obj && f != AxisFormat::Ply);
+    match (axis, CloudFormat::from_extension(said)) {
+        (Some(format), _) => Ok(Input::Axis(format)),
+        (None, Some(format)) => Ok(Input::Points(format)),
+        _ => Err(
+            Failure::usage(format!("--input-format {said}: unknown format")).hint(format!(
+                "known: .ma .json {}",
+                dotted(CloudFormat::extensions())
+            )),
+        ),
+    }
+}
+
+fn by_name(path: &Path, bytes: &[u8]) -> Option<Input> {
+    let extension = extension(path)?;
+    match AxisFormat::from_extension(extension) {
+        Some(format @ (AxisFormat::Ma | AxisFormat::Json)) => Some(Input::Axis(format)),
+        Some(AxisFormat::Ply) => Some(by_bytes(bytes)),
+        _ => CloudFormat::from_extension(extension).map(Input::Points),
+    }
+}
+
+fn by_bytes(bytes: &[u8]) -> Input {
+    match AxisFormat::sniff(bytes) {
+        Some(format) => Input::Axis(format),
+        None => Input::Points(CloudFormat::sniff(bytes)),
+    }
+}
+
+/// The balls of the input, and the side whose axis is wanted.
+fn balls(
+    args: &SimplifyMat,
+    input: Input,
+    bytes: &[u8],
+    options: &Options,
+    context: &Context,
+    talk: Talk,
+) -> Result<(LabelledBalls, Side), Failure> {
+    let side = match args.side {
+        WhichSide::Inner => Side::Inner,
+        WhichSide::Outer => Side::Outer,
+    };
+    let failed = |error| unfit(&args.input, options.lambda.is_some(), error);
+    match input {
+        Input::Axis(format) => {
+            if args.lambda.is_some() || args.skip_invalid {
+                return Err(Failure::usage(format!(
+                    "--lambda and --skip-invalid would have no effect: {} is a medial axis",
+                    name(&args.input)
+                ))
+                .hint("leave them out"));
+            }
+            let shape = read_axis(bytes, format)
+                .map_err(|error| misread(&args.input, &error, AxisFormat::extensions()))?;
+            stop::orderly();
+            let own = shape.sides.first().copied().unwrap_or(Side::Inner);
+            let side = if shape.others.is_empty() { own } else { side };
+            let balls = LabelledBalls::of_shape(&shape, context).map_err(failed)?;
+            if balls.estimated {
+                talk.at(
+                    Talk::Plain,
+                    "note: the file does not say what the samples on the balls span: estimated from the radii",
+                );
+            }
+            if !balls.has_both_sides() {
+                talk.at(
+                    Talk::Plain,
+                    "note: the file has balls of one side only: those are joined that meet within their union",
+                );
+            }
+            Ok((balls, side))
+        }
+        Input::Points(format) => {
+            let read = ReadOptions {
+                skip_invalid: args.skip_invalid,
+            };
+            let cloud = read_cloud(bytes, format, &read)
+                .map_err(|error| misread(&args.input, &error, CloudFormat::extensions()))?;
+            stop::orderly();
+            for note in &cloud.report.notes {
+                talk.at(Talk::Plain, format_args!("note: {note}"));
+            }
+            let limit = (of_machine(), "the memory of this machine,");
+            enough_memory(&args.input, &estimate(cloud.points.len()), limit)?;
+            let result =
+                powercrust::reconstruct(&cloud.points, options, context).map_err(failed)?;
+            Ok((LabelledBalls::of(result, &cloud.points), side))
+        }
+    }
+}
+
+fn pipeline_options(args: &SimplifyMat) -> Result<Options, Failure> {
+    let options = Options {
+        lambda: args.lambda,
+        ..Options::default()
+    };
+    match options.validate() {
+        Ok(()) => Ok(options),
+        Err(error) => Err(unfit(&args.input, true, error)),
+    }
+}
+
+/// The lengths in the unit of the input.
+fn lengths(args: &SimplifyMat, diagonal: f64) -> SimplifyOptions {
+    let eps = match (args.eps, args.delta) {
+        (None, None) => Some(Length::Percent(EPS_PERCENT)),
+        (eps, _) => eps,
+    };
+    let eps = eps.map(|l| l.of(diagonal));
+    let delta = args.delta.map(|l| l.of(diagonal));
+    SimplifyOptions {
+        eps,
+        delta: delta
+            .or(eps.map(|eps| DELTA_OF_EPS * eps))
+            .filter(|&d| d > 0.0),
+        keep_topology: !args.no_keep_topology,
+    }
+}
+
+fn unfit(input: &Path, filtered: bool, error: Error) -> Failure {
+    match error {
+        Error::Option {
+            name,
+            value,
+            expected,
+        } => out_of_range(name, value, expected),
+        other => unsolved(input, filtered, other),
+    }
+}
+
+/// Balls and simplices without what else is known.
+fn bare(shape: PowerShape) -> PowerShape {
+    PowerShape {
+        balls: shape.balls,
+        ids: shape.ids,
+        edges: shape.edges,
+        triangles: shape.triangles,
+        ..PowerShape::default()
+    }
+}
