@@ -356,6 +356,20 @@ impl Reconstruction {
             .collect()
     }
 
+    /// For each vertex how thick the solid is there: the diameter of the
+    /// smallest inner ball of the faces around; NaN for a vertex without any.
+    pub fn vertex_thickness(&self) -> Vec<f64> {
+        let mesh = &self.crust.mesh;
+        let mut least = vec![f64::NAN; mesh.vertices.len()];
+        for (face, thickness) in mesh.faces().zip(self.face_thickness()) {
+            for &v in face {
+                // The smaller of two numbers, whichever is NaN.
+                least[v as usize] = least[v as usize].min(thickness);
+            }
+        }
+        least
+    }
+
     /// For each face how wide the space before it is: the diameter of its
     /// outer ball. On convex parts this only tells the size of the frame.
     pub fn face_gap(&self) -> Vec<f64> {

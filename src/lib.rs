@@ -45,6 +45,7 @@
 //! **Medial axes** (section 7.3)
 //! - [`axis::LabelledBalls`]: balls with labels and power diagram, of a result or of a file
 //! - [`axis::simplify`]: without unstable and redundant balls
+//! - [`axis::structure`], [`axis::skeleton`]: sheets, seams, junctions, rims; edges only
 //! - [`PowerShape::thin`], [`PowerShape::betti`]: without flat tetrahedra; parts, tunnels, voids
 //! - [`simplify::Contact`]: what the samples on a ball span
 //!
@@ -55,7 +56,7 @@
 //!
 //! **Files**
 //! - [`io::read_cloud`], [`io::read_mesh`], [`io::read_axis`], [`io::read_balls`]
-//! - [`io::write_mesh`], [`io::write_axis`], [`io::write_balls`]
+//! - [`io::write_mesh`], [`io::write_axis`], [`io::write_axis_parts`], [`io::write_balls`]
 //!
 //! **Kernel**
 //! - [`predicates`]: orientation, in-sphere, in-power-sphere: filter, exact, perturbed

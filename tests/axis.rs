@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::shapes::{Shape, TORUS, UNIT_SPHERE};
-use powercrust::axis::{simplify, LabelledBalls, Simplified, SimplifyOptions};
+use common::shapes::{Cuboid, Shape, TORUS, UNIT_SPHERE};
+use powercrust::axis::{simplify, skeleton, structure, LabelledBalls, Simplified, SimplifyOptions};
 use powercrust::geom::vec3::dist_sq;
 use powercrust::io::{read_axis, write_axis, AxisFormat, WriteOptions};
 use powercrust::{reconstruct, Ball, Context, Options, Point, PowerShape, Side};
@@ -223,4 +223,157 @@ fn lengths_below_zero_are_refused() {
     );
     let error = error.unwrap_err().to_string();
     assert!(error.contains("eps is -1: expected a length"), "{error}");
+}
+
+/// A filter alone, without regard to topology.
+fn filter(set: impl Fn(&mut SimplifyOptions)) -> SimplifyOptions {
+    let mut options = SimplifyOptions {
+        keep_topology: false,
+        ..SimplifyOptions::default()
+    };
+    set(&mut options);
+    options
+}
+
+#[test]
+fn filters_do_what_their_papers_say() {
+    let points = PLATE.spaced_samples(1500, 0.05, 1);
+    let balls = balls_of(&points);
+    let of = |b: &LabelledBalls, id: u32| b.ids.iter().position(|&i| i == id);
+    type Rule = Box<dyn Fn(&LabelledBalls, usize) -> bool>;
+    let rules: [(SimplifyOptions, Rule); 3] = [
+        (
+            filter(|o| o.lambda = Some(0.1)),
+            Box::new(|b, k| b.contacts[k].circumradius >= 0.1),
+        ),
+        (
+            filter(|o| o.angle = Some(100.0)),
+            Box::new(|b, k| b.contacts[k].angle(b.balls[k].radius) >= 100.0),
+        ),
+        (
+            filter(|o| o.dey_zhao = Some([40.0, 3.0])),
+            Box::new(|b, k| {
+                let c = b.contacts[k];
+                c.angle(b.balls[k].radius) > 80.0 || c.diameter > 3.0 * c.spacing
+            }),
+        ),
+    ];
+    for (options, stays) in rules {
+        let kept = simplified(&balls, &options).balls;
+        assert!(kept.balls.len() < balls.balls.len());
+        for b in 0..balls.balls.len() {
+            let there = of(&kept, balls.ids[b]).is_some();
+            assert_eq!(there, stays(&balls, b), "{options:?}: ball {b}");
+        }
+    }
+}
+
+#[test]
+fn the_scale_axis_loses_what_larger_balls_cover() {
+    // Balls along a line, and small ones that peep out of the large.
+    let mut shape = ring(2, 1.0);
+    shape.edges.clear();
+    shape.balls = vec![
+        Ball::new([0.0, 0.0, 0.0], 1.0),
+        Ball::new([1.0, 0.0, 0.0], 1.0),
+        Ball::new([0.0, 0.95, 0.0], 0.1),
+        Ball::new([5.0, 0.0, 0.0], 0.1),
+    ];
+    let balls = LabelledBalls::of_shape(&shape, &Context::default()).unwrap();
+    let ids = |scale: f64| {
+        let kept = simplified(&balls, &filter(|o| o.scale = Some(scale)));
+        let mut ids = kept.balls.ids;
+        ids.sort_unstable();
+        ids
+    };
+    assert_eq!(ids(1.0), [0, 1, 2, 3]);
+    // 0.95 + 0.1 s <= s from s = 1.056 on.
+    assert_eq!(ids(1.04), [0, 1, 2, 3]);
+    assert_eq!(ids(1.07), [0, 1, 3]);
+}
+
+#[test]
+fn so_many_balls_and_no_more() {
+    let points = torus(2000);
+    let balls = balls_of(&points);
+    for most in [25, 60] {
+        let options = SimplifyOptions {
+            most: Some(most),
+            ..SimplifyOptions::default()
+        };
+        let simple = simplified(&balls, &options);
+        let after = simple.report.after;
+        assert!(after <= most && after * 2 > most, "{after} of {most}");
+        assert_eq!(simple.report.betti_after.unwrap().tunnels, 1);
+        assert!(simple.report.moved > 0);
+        let inner = |b: usize| simple.balls.sides[b] == Side::Inner;
+        for b in (0..simple.balls.balls.len()).filter(|&b| inner(b)) {
+            let ball = &simple.balls.balls[b];
+            let off = (ball.centre[0].hypot(ball.centre[1]) - 1.0).hypot(ball.centre[2]);
+            assert!(off < 0.05 && (ball.radius - 0.4).abs() < 0.05, "{ball:?}");
+        }
+    }
+}
+
+const PLATE: Cuboid = Cuboid {
+    name: "plate",
+    half: [1.0, 0.7, 0.2],
+};
+
+#[test]
+fn parts_of_a_plate_close_up() {
+    let points = PLATE.spaced_samples(1500, 0.05, 1);
+    let simple = simplified(&balls_of(&points), &lengths(0.12, 0.02));
+    let mut axis = simple.balls.shape(Side::Inner);
+    axis.thin();
+    let parts = structure(&axis);
+    // The middle sheet is the largest; balls on it are as wide as the plate.
+    assert!(parts.sheets[0].area > 1.0, "{:?}", parts.sheets[0]);
+    let [_, mean, most] = parts.sheets[0].thickness;
+    assert!(
+        mean > 0.3 && mean < 0.42 && most < 0.6,
+        "{:?}",
+        parts.sheets[0]
+    );
+    let sum: usize = parts.sheets.iter().map(|s| s.triangles).sum();
+    assert_eq!(sum, axis.triangles.len());
+    // Every edge is in a seam, a rim, a curve, or within a sheet.
+    let simplices = axis.simplices();
+    for (e, edge) in simplices.edges.iter().enumerate() {
+        let at = |t: &&[u32; 3]| edge.iter().all(|v| t.contains(v));
+        let triangles = axis.triangles.iter().filter(at).count();
+        let numbers = [parts.curve_of[e], parts.rim_of[e], parts.seam_of[e]];
+        let given: Vec<bool> = numbers.iter().map(|&n| n != u32::MAX).collect();
+        let expected = [triangles == 0, triangles == 1, triangles > 2];
+        assert_eq!(given, expected);
+    }
+    let file = |parts| {
+        let mut out = Vec::new();
+        let options = WriteOptions::default();
+        powercrust::io::write_axis_parts(&mut out, AxisFormat::Ply, &axis, parts, &options)
+            .unwrap();
+        out
+    };
+    let read = |bytes: &[u8]| read_axis(bytes, AxisFormat::Ply).unwrap();
+    assert_eq!(read(&file(Some(&parts))), read(&file(None)));
+}
+
+#[test]
+fn skeletons_are_curves_of_the_same_topology() {
+    for (points, tunnels) in [(torus(900), 1), (PLATE.spaced_samples(1500, 0.05, 1), 0)] {
+        let mut axis = balls_of(&points).shape(Side::Inner);
+        axis.thin();
+        let line = skeleton(&axis);
+        assert_eq!(line.triangles_left, 0);
+        let betti = line.shape.betti();
+        assert_eq!((betti.parts, betti.tunnels), (1, tunnels));
+        let (edges, balls) = (line.shape.edges.len(), line.shape.balls.len());
+        assert!(
+            edges < axis.edges.len() / 2,
+            "{edges} of {}",
+            axis.edges.len()
+        );
+        // A graph in one piece.
+        assert_eq!(edges + 1, balls + tunnels as usize);
+    }
 }

@@ -353,6 +353,36 @@ fn axes_are_simplified() {
     outer.code(DONE);
     let text = String::from_utf8(place.get("outer.ma")).unwrap();
     assert!(text.contains("\nside outer\n"));
+    // Filters, parts, skeleton.
+    for filter in [
+        "--lambda-medial 5%",
+        "--angle 60",
+        "--scale 1.1",
+        "--dey-zhao",
+        "--dey-zhao=30,10",
+        "--balls 30",
+    ] {
+        let ran = place.run(&format!("simplify-mat torus.xyz {filter} -o f.ma"));
+        ran.code(DONE).says("Betti numbers 1, 1, 0");
+    }
+    let ran = place.run("simplify-mat torus.xyz --structure -o parts.ply --ascii --json -q");
+    let told = ran.code(DONE).json();
+    assert!(told["structure"]["sheets"].is_array());
+    let text = String::from_utf8(place.get("parts.ply")).unwrap();
+    for property in ["sheet", "seam", "rim", "junction", "thickness"] {
+        assert!(text.contains(&format!(" {property}\n")), "{property}");
+    }
+    place
+        .run("simplify-mat torus.xyz --structure -o parts.json")
+        .code(DONE);
+    let parts: serde_json::Value = serde_json::from_slice(&place.get("parts.json")).unwrap();
+    let sheets = parts["structure"]["sheet_of_triangle"].as_array().unwrap();
+    assert_eq!(sheets.len(), parts["triangles"].as_array().unwrap().len());
+    place
+        .run("simplify-mat torus.xyz --skeleton -o line.ma")
+        .code(DONE);
+    let text = String::from_utf8(place.get("line.ma")).unwrap();
+    assert!(text.lines().next().unwrap().ends_with(" 0"));
     // What other programs write, and what they read.
     place
         .run("simplify-mat a.ma -o bare.ma --bare --eps 0 --delta 0")
@@ -385,6 +415,10 @@ fn axes_that_cannot_be_simplified() {
         ("a.ma -o b.ma --lambda 0.3", "would have no effect"),
         ("a.ma --json --bare", "would have no effect"),
         ("a.ma -o - --json", "more than one result"),
+        ("a.ma -o b.ma --angle 200", "--angle is 200"),
+        ("a.ma -o b.ma --scale 0.5", "--scale is 0.5"),
+        ("a.ma -o b.ma --dey-zhao=1", "22.5,8"),
+        ("a.ma -o b.ma --structure", "would have no effect"),
         ("torus.xyz -o b.ma --lambda 3", "--lambda is 3"),
     ];
     for (arguments, what) in usage {

@@ -155,8 +155,9 @@ fn of_three([a, b, c]: [&Site; 3]) -> Option<(Point, f64)> {
     size.is_finite().then_some((centre, size))
 }
 
-/// The sphere orthogonal to four balls; none for centres in a plane.
-fn of_four([a, b, c, d]: [&Site; 4]) -> Option<(Point, f64)> {
+/// The sphere orthogonal to four balls, as seen from the first; none for
+/// centres in a plane.
+pub fn of_four([a, b, c, d]: [&Site; 4]) -> Option<(Point, f64)> {
     let ((u, p), (v, q), (w, r)) = (equal(a, b), equal(a, c), equal(a, d));
     let (vw, wu, uv) = (cross(v, w), cross(w, u), cross(u, v));
     let volume = dot(u, vw);

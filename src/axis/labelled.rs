@@ -16,7 +16,7 @@ use crate::tetra::{order, Edges};
 
 /// A step of the balls' lattice in steps of the samples' (see
 /// [`crate::poles::BallLattice`]).
-const STEP: f64 = 1024.0;
+pub(super) const STEP: f64 = 1024.0;
 
 /// Balls read from a file reach no farther than `2^REACH` steps of the
 /// balls' lattice from its origin.
@@ -37,6 +37,8 @@ pub struct LabelledBalls {
     pub ids: Vec<u32>,
     /// The input points they touch, where known.
     pub touching: Touching,
+    /// The places of the input points, where they are known.
+    pub places: Vec<Point>,
     /// The diagonal of the bounding box of the points or, for balls from a
     /// file, of the balls of the file's axis.
     pub diagonal: f64,
@@ -63,6 +65,7 @@ impl LabelledBalls {
                 samples: result.touching.samples.iter().map(source).collect(),
                 starts: result.touching.starts,
             },
+            places: points.to_vec(),
             diagonal: Bounds::of(points).map_or(0.0, |b| b.diagonal()),
             power: result.power,
             both: true,
@@ -104,9 +107,61 @@ impl LabelledBalls {
             contacts: kept.iter().map(|b| self.contacts[pick(b)]).collect(),
             ids: kept.iter().map(|b| self.ids[pick(b)]).collect(),
             touching,
+            places: self.places.clone(),
             power,
             ..*self
         })
+    }
+
+    /// The same balls at other places and of other sizes.
+    pub(super) fn moved(
+        &self,
+        balls: Vec<Ball>,
+        context: &Context,
+    ) -> Result<LabelledBalls, Error> {
+        let own: Vec<usize> = (0..balls.len())
+            .filter(|&b| self.sides[b] == Side::Inner)
+            .collect();
+        let others: Vec<usize> = (0..balls.len())
+            .filter(|&b| self.sides[b] == Side::Outer)
+            .collect();
+        let shape = PowerShape {
+            balls: own.iter().map(|&b| balls[b]).collect(),
+            sides: vec![Side::Inner; own.len()],
+            contacts: own.iter().map(|&b| self.contacts[b]).collect(),
+            others: others.iter().map(|&b| balls[b]).collect(),
+            other_contacts: others.iter().map(|&b| self.contacts[b]).collect(),
+            ids: own.iter().chain(&others).map(|&b| self.ids[b]).collect(),
+            ..PowerShape::default()
+        };
+        let made = of_shape(&shape, context)?;
+        Ok(LabelledBalls {
+            diagonal: self.diagonal,
+            estimated: self.estimated,
+            ..made
+        })
+    }
+
+    /// How many balls are not where they were.
+    pub(super) fn moved_from(&self, before: &LabelledBalls) -> usize {
+        let mut old: Vec<(u32, Ball)> = (before.ids.iter().copied())
+            .zip(before.balls.iter().copied())
+            .collect();
+        old.sort_unstable_by_key(|b| b.0);
+        let stays = |(id, ball): (&u32, &Ball)| {
+            let at = old.binary_search_by_key(id, |b| b.0);
+            at.is_ok_and(|at| old[at].1 == *ball)
+        };
+        self.ids
+            .iter()
+            .zip(&self.balls)
+            .filter(|b| !stays(*b))
+            .count()
+    }
+
+    /// Centre and squared radius of each ball on the lattice of the diagram.
+    pub(super) fn sites(&self) -> &[Site] {
+        &self.power.sites[..self.balls.len()]
     }
 
     fn diagram_of(&self, kept: &[u32], context: &Context) -> Result<PowerDiagram, Error> {
@@ -242,6 +297,7 @@ fn of_shape(shape: &PowerShape, context: &Context) -> Result<LabelledBalls, Erro
             .map(|b| shape.ids.get(pick(b)).copied().unwrap_or(pick(b) as u32))
             .collect(),
         touching,
+        places: Vec::new(),
         diagonal: reach(shape.balls.iter()).map_or(0.0, |b| b.diagonal()),
         both: sides.iter().any(|&s| s != sides[0]),
         sides,

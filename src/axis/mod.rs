@@ -7,12 +7,18 @@
 //! Files of other programs hold inner balls only: [`dual`] then says which
 //! simplices there are, by the union of the balls alone.
 
+mod cover;
 mod dual;
 mod estimate;
 mod labelled;
 mod options;
+mod scale;
 mod simplify;
+mod skeleton;
+mod structure;
 
 pub use labelled::LabelledBalls;
 pub use options::SimplifyOptions;
 pub use simplify::{simplify, Simplified, SimplifyReport};
+pub use skeleton::{skeleton, Skeleton};
+pub use structure::{structure, Curve, Junction, Sheet, Structure};

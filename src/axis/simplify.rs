@@ -8,7 +8,7 @@
 //! numbered and so by places, until the part that makes the difference is small; the balls of that
 //! part stay.
 
-use super::{LabelledBalls, SimplifyOptions};
+use super::{cover, scale, LabelledBalls, SimplifyOptions};
 use crate::context::{Context, Portion, Stage};
 use crate::error::Error;
 use crate::geom::Side;
@@ -31,15 +31,17 @@ pub struct Simplified {
 pub struct SimplifyReport {
     /// Balls of the wanted side before.
     pub before: usize,
-    /// Those that went as unstable.
+    /// Those that went as unstable, by whichever of the filters.
     pub unstable: usize,
-    /// Those that went as redundant.
+    /// Those that went as redundant, or to leave no more than asked for.
     pub redundant: usize,
     /// Those that stay.
     pub after: usize,
     /// Balls of both sides that were to go and stay, since without them the
     /// Betti numbers would change.
     pub refused: usize,
+    /// Balls that were moved to fit what they stand for.
+    pub moved: usize,
     /// The Betti numbers of the shape before; none where they were not asked
     /// for.
     pub betti_before: Option<Betti>,
@@ -117,21 +119,53 @@ fn run(
         .filter(|&b| keep[b as usize] && goes(balls, options, b))
         .collect();
     guard.take_out(&unstable, &mut keep)?;
+    if let Some(factor) = options.scale {
+        let covered = scale::covered(balls, &keep, side, factor, context)?;
+        guard.take_out(&covered, &mut keep)?;
+    }
     let left = of_side(&keep);
     report.unstable = report.before - left;
+    let mut graph = None;
     if let Some(delta) = options.delta {
-        let graph = balls.neighbours(&part([10, 20]))?;
+        let graph = graph.insert(balls.neighbours(&part([10, 20]))?);
         let alike = |a: u32, b: u32| balls.sides[a as usize] == balls.sides[b as usize];
-        let mut redundant =
-            contained_balls(&balls.balls, &keep, &alike, &graph, delta, &part([20, 50]))?;
+        let redundant =
+            contained_balls(&balls.balls, &keep, &alike, graph, delta, &part([20, 50]))?;
+        let mut redundant: Vec<u32> = redundant.iter().map(|pair| pair[0]).collect();
         redundant.sort_unstable();
         guard.take_out(&redundant, &mut keep)?;
+    }
+    let mut stands_for = Vec::new();
+    if let Some(most) = options.most.filter(|&most| of_side(&keep) > most) {
+        let graph = match graph {
+            Some(graph) => graph,
+            None => balls.neighbours(&part([50, 55]))?,
+        };
+        let fewest = cover::Cover {
+            balls,
+            keep: &keep,
+            graph: &graph,
+            side,
+        };
+        stands_for = fewest.at_most(most, &part([55, 80]))?;
+        let mut out: Vec<u32> = stands_for.iter().map(|pair| pair[0]).collect();
+        out.sort_unstable();
+        guard.take_out(&out, &mut keep)?;
     }
     report.after = of_side(&keep);
     report.redundant = left - report.after;
     report.refused = guard.refused;
-    let kept = balls.select(&keep, context)?;
-    report.betti_after = wanted.map(|_| betti(&kept.complex(side).simplices()));
+    let mut kept = balls.select(&keep, context)?;
+    let found = |b: &LabelledBalls| wanted.map(|_| betti(&b.complex(side).simplices()));
+    report.betti_after = found(&kept);
+    stands_for.retain(|&[gone, by]| !keep[gone as usize] && keep[by as usize]);
+    if let Some(moved) = cover::improved(balls, &kept, &stands_for, context)? {
+        // A better fit is no reason to change the topology.
+        if found(&moved) == report.betti_after && moved.balls.len() == kept.balls.len() {
+            report.moved = moved.moved_from(&kept);
+            kept = moved;
+        }
+    }
     Ok(Simplified {
         balls: kept,
         report,
@@ -141,7 +175,15 @@ fn run(
 /// Whether a ball is to go for what its samples span.
 fn goes(balls: &LabelledBalls, options: &SimplifyOptions, b: u32) -> bool {
     let contact = &balls.contacts[b as usize];
+    let radius = balls.balls[b as usize].radius;
     options.eps.is_some_and(|eps| contact.diameter <= eps)
+        || (options.lambda).is_some_and(|lambda| contact.circumradius < lambda)
+        || (options.angle).is_some_and(|angle| contact.angle(radius) < angle)
+        || options.dey_zhao.is_some_and(|[angle, ratio]| {
+            let steep = contact.angle(radius) > 2.0 * angle;
+            let far = contact.spacing > 0.0 && contact.diameter > ratio * contact.spacing;
+            !steep && !far
+        })
 }
 
 /// Takes balls out as long as the Betti numbers stay.

@@ -116,6 +116,10 @@ impl Carried {
                 out.vertices.push((column.name.clone(), values));
             }
         }
+        if wanted.wants("thickness", false) {
+            let column = Column::Float(result.vertex_thickness());
+            out.vertices.push(("thickness".to_owned(), column));
+        }
         let mut face = |name: &str, column: &dyn Fn() -> Column| {
             if wanted.wants(name, false) {
                 out.faces.push((name.to_owned(), column()));

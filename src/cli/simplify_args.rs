@@ -15,6 +15,8 @@ Examples:
                                      0.01 can make or unmake
   powercrust simplify-mat points.ply --eps 1% --delta 0.2% -o simple.ply --thin
                                      from points, without flat tetrahedra
+  powercrust simplify-mat points.ply --balls 200 --structure -o parts.ply
+                                     200 balls, with numbered sheets
   powercrust simplify-mat axis.ma --eps 1% --no-keep-topology -o simple.ma
                                      even where tunnels close";
 
@@ -70,6 +72,16 @@ pub struct SimplifyMat {
     #[arg(long, help_heading = FILES)]
     pub thin: bool,
 
+    /// Number the sheets, seams, junctions and rims of the thin axis: in PLY
+    /// and JSON files and with --json. Implies --thin.
+    #[arg(long, help_heading = FILES)]
+    pub structure: bool,
+
+    /// Write the curve skeleton: edges only, with the same parts and tunnels.
+    /// Sheets that enclose a void stay.
+    #[arg(long, conflicts_with = "structure", help_heading = FILES)]
+    pub skeleton: bool,
+
     /// Write balls, edges and triangles only, for programs that know no more.
     ///
     /// Otherwise the file also says what the samples on each ball span and
@@ -102,6 +114,33 @@ pub struct SimplifyMat {
     /// default a quarter of E.
     #[arg(long, value_name = "D", value_parser = length, allow_hyphen_values = true, help_heading = WHAT)]
     pub delta: Option<Length>,
+
+    /// Lambda-medial axis: take out balls whose samples fit into a ball of less
+    /// than this radius. A length, or a share of the diagonal.
+    #[arg(long, value_name = "L", value_parser = length, allow_hyphen_values = true, help_heading = WHAT)]
+    pub lambda_medial: Option<Length>,
+
+    /// Take out balls whose samples are seen from the centre under less than
+    /// this angle: 0 to 180 degrees.
+    #[arg(long, value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = WHAT)]
+    pub angle: Option<f64>,
+
+    /// Scale axis: take out balls that the others cover when all are grown by
+    /// this factor, 1 to 10.
+    #[arg(long, value_name = "S", value_parser = real, allow_hyphen_values = true, help_heading = WHAT)]
+    pub scale: Option<f64>,
+
+    /// Take out balls that fail both conditions of Dey and Zhao: an angle of 0
+    /// to 90 degrees and a number of sample spacings; by default 22.5,8.
+    ///
+    /// The second needs points, or a file that says how they are spaced.
+    #[arg(long, value_name = "DEG,RATIO", num_args = 0..=1, require_equals = true, default_missing_value = "22.5,8", value_parser = two, help_heading = WHAT)]
+    pub dey_zhao: Option<[f64; 2]>,
+
+    /// Keep at most so many balls: those that stand for the others best. Where
+    /// the input is points they are then moved to fit the samples.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), help_heading = WHAT)]
+    pub balls: Option<u32>,
 
     /// Refuse what would change the parts, tunnels and voids of the axis
     /// (this is the default).
@@ -137,4 +176,14 @@ pub struct SimplifyMat {
     /// Say more.
     #[arg(short, long, action = ArgAction::Count, help_heading = REPORTING)]
     pub verbose: u8,
+}
+
+/// Reads two numbers with a comma between.
+fn two(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || "expected an angle and a ratio such as 22.5,8".to_owned();
+    let (first, second) = text.split_once(',').ok_or_else(wrong)?;
+    match (real(first.trim()), real(second.trim())) {
+        (Ok(first), Ok(second)) => Ok([first, second]),
+        _ => Err(wrong()),
+    }
 }

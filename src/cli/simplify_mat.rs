@@ -5,9 +5,11 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use powercrust::axis::{simplify, LabelledBalls, SimplifyOptions, SimplifyReport};
+use powercrust::axis::{
+    simplify, skeleton, structure, LabelledBalls, SimplifyOptions, SimplifyReport,
+};
 use powercrust::io::{
-    read_axis, read_cloud, write_axis, AxisFormat, CloudFormat, ReadOptions, WriteOptions,
+    read_axis, read_cloud, write_axis_parts, AxisFormat, CloudFormat, ReadOptions, WriteOptions,
 };
 use powercrust::memory::{estimate, of_machine};
 use powercrust::{Context, Error, Options, PowerShape, Side};
@@ -52,7 +54,21 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
         let simple = simplify(&balls, &how, side, &context)
             .map_err(|error| unfit(&args.input, options.lambda.is_some(), error))?;
         let mut shape = simple.balls.shape(side);
-        let thinned = if args.thin { shape.thin() } else { 0 };
+        let thin = args.thin || args.structure || args.skeleton;
+        let thinned = if thin { shape.thin() } else { 0 };
+        if args.skeleton {
+            let burned = skeleton(&shape);
+            shape = burned.shape;
+            if burned.triangles_left > 0 {
+                talk.at(
+                    Talk::Plain,
+                    format_args!(
+                        "note: {} stayed in the skeleton: they enclose a void",
+                        counted(burned.triangles_left, "triangle", "triangles")
+                    ),
+                );
+            }
+        }
         Ok((how, side, simple.report, shape, thinned))
     });
     bar.clear();
@@ -69,6 +85,7 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
             ),
         );
     }
+    let parts = args.structure.then(|| structure(&shape));
     if let Some(out) = &target {
         if args.bare {
             shape = bare(shape);
@@ -83,7 +100,7 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
             ..WriteOptions::default()
         };
         stage(&out.target, &out.path, |mut w| {
-            write_axis(&mut w, out.format, &shape, &write)
+            write_axis_parts(&mut w, out.format, &shape, parts.as_ref(), &write)
         })?
         .publish()?;
     }
@@ -95,7 +112,7 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
     };
     talk.at(Talk::Plain, line(&at, &report, &shape, seconds));
     if args.json {
-        let object = json!({
+        let mut object = json!({
             "ok": true,
             "powercrust": env!("CARGO_PKG_VERSION"),
             "input": { "file": name(&args.input) },
@@ -107,6 +124,9 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
             "peak_memory_bytes": powercrust::memory::peak(),
             "seconds": seconds,
         });
+        if let Some(parts) = &parts {
+            object["structure"] = json!(parts);
+        }
         let text = format!("{object:#}\n");
         Target::Stdout.stage(|w| w.write_all(text.as_bytes()))?;
     }
@@ -160,6 +180,10 @@ fn place(args: &SimplifyMat) -> Result<Option<Out<AxisFormat>>, Failure> {
     let ply = out.format == AxisFormat::Ply;
     if args.ascii && !ply {
         return Err(idle("--ascii", "PLY files"));
+    }
+    let numbered = ply || out.format == AxisFormat::Json || args.json;
+    if args.structure && !numbered {
+        return Err(idle("--structure", "PLY and JSON files and --json"));
     }
     if args.precision.is_some() && ply && !args.ascii {
         return Err(idle("--precision", "text formats"));
@@ -296,10 +320,13 @@ fn pipeline_options(args: &SimplifyMat) -> Result<Options, Failure> {
 
 /// The lengths in the unit of the input.
 fn lengths(args: &SimplifyMat, diagonal: f64) -> SimplifyOptions {
-    let eps = match (args.eps, args.delta) {
-        (None, None) => Some(Length::Percent(EPS_PERCENT)),
-        (eps, _) => eps,
-    };
+    let said = args.delta.is_some()
+        || args.lambda_medial.is_some()
+        || args.angle.is_some()
+        || args.scale.is_some()
+        || args.dey_zhao.is_some()
+        || args.balls.is_some();
+    let eps = args.eps.or((!said).then_some(Length::Percent(EPS_PERCENT)));
     let eps = eps.map(|l| l.of(diagonal));
     let delta = args.delta.map(|l| l.of(diagonal));
     SimplifyOptions {
@@ -307,6 +334,11 @@ fn lengths(args: &SimplifyMat, diagonal: f64) -> SimplifyOptions {
         delta: delta
             .or(eps.map(|eps| DELTA_OF_EPS * eps))
             .filter(|&d| d > 0.0),
+        lambda: args.lambda_medial.map(|l| l.of(diagonal)),
+        angle: args.angle,
+        scale: args.scale,
+        dey_zhao: args.dey_zhao,
+        most: args.balls.map(|n| n as usize),
         keep_topology: !args.no_keep_topology,
     }
 }

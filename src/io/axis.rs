@@ -18,6 +18,7 @@ use super::format::AxisFormat;
 use super::scan::{self, Stream};
 use super::sink::{check_count, check_finite};
 use super::{json, ply};
+use crate::axis::Structure;
 use crate::geom::{Ball, Side};
 use crate::simplify::Contact;
 use crate::surface::PowerShape;
@@ -27,14 +28,18 @@ pub fn write<W: Write>(
     writer: &mut W,
     format: AxisFormat,
     shape: &PowerShape,
+    parts: Option<&Structure>,
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
     check(shape)?;
+    if let Some(parts) = parts {
+        check_parts(shape, parts)?;
+    }
     match format {
         AxisFormat::Ma => write_ma(writer, shape, options),
-        AxisFormat::Ply => ply::write_axis(writer, shape, options),
+        AxisFormat::Ply => ply::write_axis(writer, shape, parts, options),
         AxisFormat::Obj => write_obj(writer, shape, options),
-        AxisFormat::Json => json::write_axis(writer, shape, options),
+        AxisFormat::Json => json::write_axis(writer, shape, parts, options),
     }
 }
 
@@ -64,6 +69,23 @@ pub fn read(bytes: &[u8], format: AxisFormat) -> Result<PowerShape, ReadError> {
         what: e.to_string(),
     })?;
     Ok(shape)
+}
+
+/// Every simplex has a number.
+fn check_parts(shape: &PowerShape, parts: &Structure) -> Result<(), WriteError> {
+    let lists = [
+        ("sheets", parts.sheet_of.len(), shape.triangles.len()),
+        ("seams", parts.seam_of.len(), shape.edges.len()),
+        ("rims", parts.rim_of.len(), shape.edges.len()),
+        ("curves", parts.curve_of.len(), shape.edges.len()),
+        ("junctions", parts.junction_of.len(), shape.balls.len()),
+    ];
+    match lists.into_iter().find(|(_, given, wanted)| given != wanted) {
+        None => Ok(()),
+        Some((name, given, wanted)) => Err(WriteError::Inconsistent {
+            what: format!("axis: {given} numbers of {name} for {wanted} simplices"),
+        }),
+    }
 }
 
 /// A contact whose lengths can be such.

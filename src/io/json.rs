@@ -4,6 +4,7 @@ use super::attributes::{Attribute, AttributeValues, MeshAttributes, WriteOptions
 use super::buffer::Buffer;
 use super::error::{Place, ReadError, WriteError};
 use super::sink::{check_count, check_finite, FaceSink};
+use crate::axis::Structure;
 use crate::geom::Ball;
 use crate::mesh::PolygonMesh;
 use crate::simplify::{Contact, Touching};
@@ -297,6 +298,7 @@ pub fn write_mesh<W: Write>(
 pub fn write_axis<W: Write>(
     writer: &mut W,
     shape: &PowerShape,
+    parts: Option<&Structure>,
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
     let mut out = Buffer::new(writer, options);
@@ -341,6 +343,9 @@ pub fn write_axis<W: Write>(
         })?;
     }
     contacts(&mut out, "other_contacts", &shape.other_contacts)?;
+    if let Some(parts) = parts {
+        structure(&mut out, parts)?;
+    }
     out.text("}\n");
     out.finish()
 }
@@ -358,4 +363,26 @@ fn contacts<W: Write>(
     list(out, name, contacts.iter(), |o, c| {
         reals(o, &[c.diameter, c.circumradius, c.spacing])
     })
+}
+
+/// The parts, and for each simplex the number of its part.
+fn structure<W: Write>(out: &mut Buffer<W>, parts: &Structure) -> Result<(), WriteError> {
+    let told = serde_json::to_string(parts).unwrap_or_default();
+    out.text(",\n\"structure\":");
+    out.text(told.strip_suffix('}').unwrap_or("{"));
+    let lists = [
+        ("sheet_of_triangle", &parts.sheet_of),
+        ("seam_of_edge", &parts.seam_of),
+        ("rim_of_edge", &parts.rim_of),
+        ("curve_of_edge", &parts.curve_of),
+        ("junction_of_ball", &parts.junction_of),
+    ];
+    for (name, numbers) in lists {
+        out.text(",\n");
+        list(out, name, numbers.iter(), |o, &n| {
+            o.integer(if n == NONE { -1 } else { i64::from(n) })
+        })?;
+    }
+    out.text("}");
+    Ok(())
 }

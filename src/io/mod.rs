@@ -41,6 +41,7 @@ pub use cloud::{Cloud, ReadOptions, ReadReport, ScalarColumn};
 pub use error::{Place, ReadError, WriteError};
 pub use format::{AxisFormat, CloudFormat, MeshFormat};
 
+use crate::axis::Structure;
 use crate::geom::Point;
 use crate::mesh::PolygonMesh;
 use crate::pipeline::PolarBall;
@@ -151,7 +152,24 @@ pub fn write_axis<W: Write>(
     shape: &PowerShape,
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
-    axis::write(writer, format, shape, options)
+    axis::write(writer, format, shape, None, options)
+}
+
+/// The same with the numbers of the parts each simplex belongs to: PLY has
+/// them as `sheet` of faces, `seam`, `rim` and `curve` of edges and `junction`
+/// of vertices, -1 for none, beside the `thickness` of each ball, its
+/// diameter; JSON as lists under `structure`. `.ma` and OBJ have none.
+///
+/// # Errors
+/// As [`write_mesh`]; also where the parts are those of another shape.
+pub fn write_axis_parts<W: Write>(
+    writer: &mut W,
+    format: AxisFormat,
+    shape: &PowerShape,
+    parts: Option<&Structure>,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    axis::write(writer, format, shape, parts, options)
 }
 
 /// A medial axis from the bytes of a file. Where the file has no ball ids,

@@ -16,7 +16,7 @@ use crate::tetra::Edges;
 const REPORT: usize = 1 << 12;
 
 /// The redundant ones among the balls that `alive` says are there, in the
-/// order they go. Balls take out others for which `alike` holds only: those
+/// order they go, each with the ball that holds it. Balls take out others for which `alike` holds only: those
 /// on their side.
 ///
 /// # Errors
@@ -28,7 +28,7 @@ pub fn redundant(
     graph: &Edges,
     delta: f64,
     progress: &Portion,
-) -> Result<Vec<u32>, Cancelled> {
+) -> Result<Vec<[u32; 2]>, Cancelled> {
     let radius = |b: u32| balls[b as usize].radius;
     let mut order: Vec<u32> = (0..balls.len() as u32)
         .filter(|&b| alive[b as usize])
@@ -64,7 +64,7 @@ pub fn redundant(
                     front.push(p);
                 } else if rank[p as usize] > done as u32 {
                     there[p as usize] = false;
-                    gone.push(p);
+                    gone.push([p, c]);
                     front.push(p);
                 }
             }

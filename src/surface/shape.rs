@@ -47,6 +47,48 @@ impl PowerShape {
         betti(&self.simplices())
     }
 
+    /// Leaves out balls that no simplex uses and `keep` does not say.
+    pub fn keep_balls(&mut self, keep: &[bool]) {
+        let mut used = keep.to_vec();
+        used.resize(self.balls.len(), false);
+        let corners = (self.edges.iter().flatten())
+            .chain(self.triangles.iter().flatten())
+            .chain(self.tetrahedra.iter().flatten());
+        for &v in corners {
+            used[v as usize] = true;
+        }
+        let mut number = vec![0; used.len()];
+        let mut next = 0;
+        for (n, &used) in number.iter_mut().zip(&used) {
+            *n = next;
+            next += u32::from(used);
+        }
+        fn pick<T: Copy>(list: &mut Vec<T>, used: &[bool]) {
+            let mut k = 0;
+            list.retain(|_| {
+                k += 1;
+                used[k - 1]
+            });
+        }
+        pick(&mut self.balls, &used);
+        pick(&mut self.ids, &used);
+        pick(&mut self.sides, &used);
+        pick(&mut self.contacts, &used);
+        if !self.touching.starts.is_empty() {
+            let old = std::mem::take(&mut self.touching);
+            self.touching.starts.push(0);
+            for v in (0..used.len() as u32).filter(|&v| used[v as usize]) {
+                self.touching.samples.extend_from_slice(old.at(v));
+                let end = self.touching.samples.len() as u32;
+                self.touching.starts.push(end);
+            }
+        }
+        let renumber = |v: &mut u32| *v = number[*v as usize];
+        self.edges.iter_mut().flatten().for_each(renumber);
+        self.triangles.iter_mut().flatten().for_each(renumber);
+        self.tetrahedra.iter_mut().flatten().for_each(renumber);
+    }
+
     /// Collapses the flat tetrahedra (section 3.4) without a change of the
     /// Betti numbers. Returns how many there were; any still there close up
     /// on each other, as those of a power shape cannot.

@@ -3,6 +3,7 @@
 use super::super::attributes::{Attribute, AttributeValues, MeshAttributes, WriteOptions};
 use super::super::buffer::{comment_lines, Buffer};
 use super::super::error::WriteError;
+use crate::axis::Structure;
 use crate::geom::{Ball, Side};
 use crate::mesh::PolygonMesh;
 use crate::pipeline::PolarBall;
@@ -290,6 +291,7 @@ pub fn write_mesh<W: Write>(
 pub fn write_axis<W: Write>(
     writer: &mut W,
     shape: &PowerShape,
+    parts: Option<&Structure>,
     options: &WriteOptions,
 ) -> Result<(), WriteError> {
     let all = shape.balls.iter().chain(&shape.others);
@@ -308,10 +310,20 @@ pub fn write_axis<W: Write>(
     if !shape.contacts.is_empty() {
         ply.properties(ply.real_kind(), &span);
     }
+    if parts.is_some() {
+        ply.properties(ply.real_kind(), &["thickness"]);
+        ply.properties("int", &["junction"]);
+    }
     ply.element("edge", shape.edges.len());
     ply.properties("int", &["vertex1", "vertex2"]);
+    if parts.is_some() {
+        ply.properties("int", &["seam", "rim", "curve"]);
+    }
     ply.element("face", shape.triangles.len());
     ply.properties("list uchar int", &["vertex_indices"]);
+    if parts.is_some() {
+        ply.properties("int", &["sheet"]);
+    }
     if !shape.tetrahedra.is_empty() {
         ply.element("tetrahedron", shape.tetrahedra.len());
         ply.properties("list uchar int", &["vertex_indices"]);
@@ -333,19 +345,31 @@ pub fn write_axis<W: Write>(
             ply.byte(side as u8);
         }
         ply.contact(shape.contacts.get(i));
+        if let Some(parts) = parts {
+            ply.real(2.0 * ball.radius);
+            ply.index(parts.junction_of[i]);
+        }
         ply.end()?;
     }
-    for &[a, b] in &shape.edges {
+    for (e, &[a, b]) in shape.edges.iter().enumerate() {
         ply.index(a);
         ply.index(b);
+        if let Some(parts) = parts {
+            for of in [&parts.seam_of, &parts.rim_of, &parts.curve_of] {
+                ply.index(of[e]);
+            }
+        }
         ply.end()?;
     }
     let triangles = shape.triangles.iter().map(|t| &t[..]);
     let tetrahedra = shape.tetrahedra.iter().map(|t| &t[..]);
-    for corners in triangles.chain(tetrahedra) {
+    for (t, corners) in triangles.chain(tetrahedra).enumerate() {
         ply.byte(corners.len() as u8);
         for &c in corners {
             ply.index(c);
+        }
+        if let Some(&sheet) = parts.and_then(|parts| parts.sheet_of.get(t)) {
+            ply.index(sheet);
         }
         ply.end()?;
     }
