@@ -4,7 +4,7 @@
 //! [`LabelledBalls`] holds balls of both sides with their power diagram,
 //! whether they come from a reconstruction or from a file. [`simplify`] takes
 //! balls out and makes the diagram of those that stay, with the old labels.
-//! Files of other programs hold inner balls only: [`dual`] then says which
+//! Files of other programs hold inner balls only: the dual complex then says which
 //! simplices there are, by the union of the balls alone.
 
 mod cover;
@@ -21,4 +21,4 @@ pub use labelled::LabelledBalls;
 pub use options::SimplifyOptions;
 pub use simplify::{simplify, Simplified, SimplifyReport};
 pub use skeleton::{skeleton, Skeleton};
-pub use structure::{structure, Curve, Junction, Sheet, Structure};
+pub use structure::{structure, Curve, Junction, Sheet, Structure, NO_PART};
