@@ -315,6 +315,19 @@ fn so_many_balls_and_no_more() {
     }
 }
 
+#[test]
+fn as_few_balls_as_the_topology_allows() {
+    let balls = balls_of(&torus(900));
+    let options = SimplifyOptions {
+        most: Some(1),
+        ..SimplifyOptions::default()
+    };
+    let report = simplified(&balls, &options).report;
+    assert_eq!(report.betti_after.unwrap().tunnels, 1);
+    assert!(report.after > 2 && report.after < 12, "{report:?}");
+    assert_eq!(report.refused, report.after - 1);
+}
+
 const PLATE: Cuboid = Cuboid {
     name: "plate",
     half: [1.0, 0.7, 0.2],

@@ -141,16 +141,27 @@ fn run(
             Some(graph) => graph,
             None => balls.neighbours(&part([50, 55]))?,
         };
-        let fewest = cover::Cover {
-            balls,
-            keep: &keep,
-            graph: &graph,
-            side,
-        };
-        stands_for = fewest.at_most(most, &part([55, 80]))?;
-        let mut out: Vec<u32> = stands_for.iter().map(|pair| pair[0]).collect();
-        out.sort_unstable();
-        guard.take_out(&out, &mut keep)?;
+        // Fewer balls than the topology needs are not kept: more are allowed
+        // by halves until it is the same.
+        let count = of_side(&keep);
+        let mut allowed = most;
+        while allowed < count {
+            let fewest = cover::Cover {
+                balls,
+                keep: &keep,
+                graph: &graph,
+                side,
+            };
+            stands_for = fewest.at_most(allowed, &part([55, 80]))?;
+            let mut out: Vec<u32> = stands_for.iter().map(|pair| pair[0]).collect();
+            out.sort_unstable();
+            if guard.all_or_none(&out, &mut keep)? {
+                break;
+            }
+            stands_for.clear();
+            allowed += allowed / 2 + 1;
+        }
+        guard.refused += of_side(&keep).saturating_sub(most);
     }
     report.after = of_side(&keep);
     report.redundant = left - report.after;
@@ -199,6 +210,24 @@ struct Guard<'a> {
 }
 
 impl Guard<'_> {
+    /// Takes balls out if the Betti numbers stay; whether they did.
+    fn all_or_none(&self, out: &[u32], keep: &mut [bool]) -> Result<bool, Error> {
+        for &b in out {
+            keep[b as usize] = false;
+        }
+        let Some(wanted) = self.wanted else {
+            return Ok(true);
+        };
+        let shape = self.balls.complex_of(keep, self.side, self.context)?;
+        let same = betti(&shape.simplices()) == wanted;
+        if !same {
+            for &b in out {
+                keep[b as usize] = true;
+            }
+        }
+        Ok(same)
+    }
+
     fn take_out(&mut self, out: &[u32], keep: &mut [bool]) -> Result<(), Error> {
         if out.is_empty() {
             return Ok(());
