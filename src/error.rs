@@ -25,6 +25,16 @@ pub enum Error {
         /// Number of distinct samples.
         samples: usize,
     },
+    /// An offset so far inside that no ball is left.
+    #[error(
+        "nothing is left at the distance {distance}: the largest inner ball has the radius {depth}"
+    )]
+    Vanished {
+        /// The distance, negative inside.
+        distance: f64,
+        /// The largest radius of an inner ball.
+        depth: f64,
+    },
     /// An index would not fit in 32 bits.
     #[error("too large: {what} would need {count} entries, the limit is {limit}")]
     TooLarge {

@@ -49,6 +49,9 @@
 //! - [`PowerShape::thin`], [`PowerShape::betti`]: without flat tetrahedra; parts, tunnels, voids
 //! - [`simplify::Contact`]: what the samples on a ball span
 //!
+//! **Made from a result**
+//! - [`offset::Offsets`]: surfaces at a distance, shells
+//!
 //! **Meshes**
 //! - [`mesh::check`]: is a mesh closed, manifold, oriented and free of crossings? Exact
 //! - [`mesh::components`], [`mesh::component_volumes`], [`mesh::enclosing`]: its parts
@@ -79,6 +82,7 @@ pub mod io;
 pub mod label;
 pub mod memory;
 pub mod mesh;
+pub mod offset;
 pub mod options;
 pub mod pipeline;
 pub mod poles;

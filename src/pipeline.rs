@@ -13,7 +13,7 @@ use crate::label::{
 };
 use crate::memory;
 use crate::options::Options;
-use crate::poles::{poles, PoleOptions};
+use crate::poles::{poles, BallLattice, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
@@ -41,12 +41,17 @@ pub struct Reconstruction {
     /// For each sample id (the `vertex_samples` of the crust) the index of
     /// the first input point at that place.
     pub sample_source: Vec<u32>,
-    /// The power diagram of the balls; its sites are in lattice units.
+    /// The power diagram of the balls; its sites are in steps of the lattice
+    /// of balls.
     pub power: PowerDiagram,
     /// The samples that each ball touches, or stands for.
     pub touching: Touching,
     /// The spacing of the samples at each sample, in the units of the input.
     pub spacing: Vec<f64>,
+    /// The lattice of the samples.
+    pub lattice: Lattice,
+    /// The lattice of the balls, so much coarser.
+    pub ball_lattice: BallLattice,
     /// Counts and timings.
     pub stats: Stats,
 }
@@ -248,6 +253,8 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         power,
         touching,
         spacing,
+        lattice,
+        ball_lattice: poles.balls.lattice,
         stats,
     })
 }

@@ -46,9 +46,10 @@ const ROWS: [(&[&str], &str); 13] = [
     ),
     (&["pipeline"], "the stages in order"),
     (
-        &["attributes", "axis"],
+        &["attributes", "axis", "offset"],
         "what a result's vertices and faces inherit from points and balls; \
-         what is left of its medial axis",
+         what is left of its medial axis; surfaces at a distance. None needs \
+         the others",
     ),
     (
         &["io"],

@@ -93,6 +93,7 @@ fn mend(bencher: Bencher, cloud: Cloud) {
     let crust = surface::triangulate(&polygons(run));
     let how = MendOptions {
         flatness: Options::default().flatness,
+        tolerance: None,
         single: false,
         keep_samples: false,
         spacing: &|s| run.spacing[s as usize],

@@ -11,7 +11,7 @@ use powercrust::Options;
 
 use super::formats::dotted;
 use super::simplify_args::{self, SimplifyMat};
-use super::wanted::{self, Wanted};
+use super::wanted::{self, Distance, Distances, Wanted};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -55,6 +55,16 @@ Examples:
   powercrust check crust.ply
   powercrust check crust.ply --json | jq .genus";
 
+const OFFSET_EXAMPLES: &str = "\
+Examples:
+  powercrust offset points.ply --distance 0.5 -o larger.ply
+  powercrust offset points.ply --distance 0.5,-0.5,1% -o 'part_{d}.ply'
+                                         three surfaces from one reconstruction
+  powercrust offset points.ply --shell 2 -o hollow.ply
+                                         a wall 2 thick, inside the surface
+  powercrust offset points.ply --distance 3 --shell 3 -o mould.ply
+                                         a wall 3 thick, outside the surface";
+
 /// Watertight surface and medial axis of a point cloud.
 ///
 /// Points go in, a closed and oriented mesh comes out. No normals are needed
@@ -92,6 +102,9 @@ pub enum Command {
     /// Say whether a mesh is closed, manifold, oriented and free of crossings.
     #[command(after_help = CHECK_EXAMPLES, after_long_help = format!("{CHECK_EXAMPLES}\n\n{EXIT_CODES}"))]
     Check(Check),
+    /// Surfaces at a distance outside or inside, and shells.
+    #[command(after_help = OFFSET_EXAMPLES, after_long_help = format!("{OFFSET_EXAMPLES}\n\n{EXIT_CODES}"))]
+    Offset(Box<Offset>),
     /// Simplify a medial axis.
     #[command(after_help = simplify_args::EXAMPLES, after_long_help = format!("{}\n\n{EXIT_CODES}", simplify_args::EXAMPLES))]
     SimplifyMat(SimplifyMat),
@@ -103,7 +116,7 @@ const SURFACE: &str = "Surface";
 const EXTRA: &str = "More results";
 const REPORTING: &str = "Running and reporting";
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct Reconstruct {
     /// Points to read; `-` for standard input.
     ///
@@ -314,6 +327,105 @@ pub struct Check {
     /// Print nothing; only the exit code tells.
     #[arg(short, long, conflicts_with = "json")]
     pub quiet: bool,
+}
+
+/// `powercrust offset`.
+#[derive(Debug, Args)]
+pub struct Offset {
+    /// Points to read; `-` for standard input.
+    #[arg(value_name = "POINTS")]
+    pub input: PathBuf,
+
+    /// Distances between commas, positive outside, negative inside: lengths in
+    /// the unit of the points, or shares of the diagonal of their box such as
+    /// 1%. By default 0, which --shell needs no more than.
+    #[arg(long, value_name = "LIST", value_parser = wanted::distances, allow_hyphen_values = true)]
+    pub distance: Option<Distances>,
+
+    /// Make a wall of this thickness instead of a full solid: from the surface
+    /// at each distance inward. A length or a share of the diagonal, above 0.
+    #[arg(long, value_name = "T", value_parser = wanted::distance, allow_hyphen_values = true)]
+    pub shell: Option<Distance>,
+
+    /// Mesh to write; `-` for standard output.
+    ///
+    /// `{d}` stands for the distance as it was given; with several distances
+    /// it must be there. All files appear, or none.
+    #[arg(short, long, value_name = "MESH")]
+    pub output: PathBuf,
+
+    /// How far faces may lie off the exact distance from the crust between
+    /// their vertices: a length, or a share of the diagonal, above 0. Larger
+    /// ones give fewer triangles. By default 0.01%, or what the crust itself is
+    /// off a smooth surface, if that is more.
+    #[arg(long, value_name = "X", value_parser = wanted::distance, allow_hyphen_values = true)]
+    pub tolerance: Option<Distance>,
+
+    /// Leave the faces as the power diagram has them, as the paper does.
+    ///
+    /// By default vertices are moved to the exact distance from the crust, and
+    /// faces that are off it are cut.
+    #[arg(long, conflicts_with = "tolerance")]
+    pub plain: bool,
+
+    /// Format of the input, whatever its name.
+    #[arg(long, value_name = "FORMAT", help_heading = FILES)]
+    pub input_format: Option<String>,
+
+    /// Format of the meshes, whatever their names.
+    #[arg(long, value_name = "FORMAT", help_heading = FILES)]
+    pub output_format: Option<String>,
+
+    /// Write PLY and STL as text.
+    #[arg(long, help_heading = FILES)]
+    pub ascii: bool,
+
+    /// Round coordinates to 32 bits, and make sure of the surfaces on those.
+    #[arg(long, help_heading = FILES)]
+    pub f32: bool,
+
+    /// Drop points that are NaN or infinite instead of refusing the input.
+    #[arg(long, help_heading = FILES)]
+    pub skip_invalid: bool,
+
+    /// Ignore poles of samples whose Voronoi cell is too fat: 0 < L <= 1.
+    #[arg(long, value_name = "L", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub lambda: Option<f64>,
+
+    /// Extend faces to sharp edges and corners, for machine parts.
+    #[arg(long, help_heading = METHOD)]
+    pub sharp: bool,
+
+    /// Size of the frame over that of the points' box: 2 to 100, by default
+    /// what the largest distance needs, at least 5.
+    #[arg(long, value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub box_factor: Option<f64>,
+
+    #[arg(long, help = merge_help(), value_name = "X", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
+    pub merge: Option<f64>,
+
+    /// Refuse to start (exit code 1) where the reconstruction is likely to
+    /// need more memory than this: 800M, 2G. By default what the machine has.
+    #[arg(long, value_name = "SIZE", value_parser = wanted::size, help_heading = REPORTING)]
+    pub max_memory: Option<u64>,
+
+    /// Print a summary of the run as one JSON object on standard output,
+    /// errors included.
+    #[arg(long, help_heading = REPORTING)]
+    pub json: bool,
+
+    /// Threads to use, by default all, at most 256. The result does not depend
+    /// on it.
+    #[arg(long, value_name = "N", help_heading = REPORTING)]
+    pub threads: Option<NonZeroUsize>,
+
+    /// Print nothing but errors.
+    #[arg(short, long, conflicts_with = "verbose", help_heading = REPORTING)]
+    pub quiet: bool,
+
+    /// Say more: -v options in effect and times.
+    #[arg(short, long, action = ArgAction::Count, help_heading = REPORTING)]
+    pub verbose: u8,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

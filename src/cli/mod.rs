@@ -8,6 +8,7 @@ mod check;
 mod fail;
 mod formats;
 mod generate;
+mod offset;
 mod output;
 mod plan;
 mod product;
@@ -41,11 +42,13 @@ fn dispatch(cli: Cli) -> ExitCode {
     let json = match &cli.command {
         Some(Command::Check(check)) => check.json,
         Some(Command::SimplifyMat(args)) => args.json,
+        Some(Command::Offset(offset)) => offset.json,
         _ => cli.reconstruct.json,
     };
     let done = match (cli.command, cli.generate) {
         (Some(Command::Check(args)), _) => check::check(&args),
         (Some(Command::SimplifyMat(args)), _) => simplify_mat::simplify_mat(&args),
+        (Some(Command::Offset(args)), _) => offset::offset(&args),
         (None, Some(what)) => generate::generate(what),
         (None, None) => plan::Plan::new(cli.reconstruct).and_then(|plan| run::run(&plan)),
     };

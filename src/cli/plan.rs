@@ -67,14 +67,11 @@ pub struct Out<F> {
 
 impl Plan {
     pub fn new(args: Reconstruct) -> Result<Plan, Failure> {
-        let mut decisions = Vec::new();
         let Some(input) = args.input.clone() else {
             return Err(Failure::usage("no points given")
                 .hint("powercrust points.ply -o crust.ply (see powercrust --help)"));
         };
-        let options = options(&args, &mut decisions)?;
-        let input_format = input_format(&input, args.input_format.as_deref())?;
-        check_input(&input)?;
+        let plan = Plan::read(&args, &input)?;
         let results = [
             &args.output,
             &args.mat,
@@ -87,7 +84,6 @@ impl Plan {
                 Failure::usage("nowhere to write the mesh: -o is missing").hint(suggestion(&input))
             );
         }
-
         let plan = Plan {
             mesh: out(&args.output, |path| {
                 mesh_format(path, args.output_format.as_deref())
@@ -97,6 +93,26 @@ impl Plan {
             thin: args.thin,
             poles: out(&args.poles, poles_format)?,
             stats: out(&args.stats, |_| Ok(()))?,
+            ..plan
+        };
+        plan.check_places()?;
+        plan.check_idle_flags(&args)?;
+        Ok(plan)
+    }
+
+    /// A run that writes nothing: how points are read and reconstructed.
+    pub fn read(args: &Reconstruct, input: &Path) -> Result<Plan, Failure> {
+        let mut decisions = Vec::new();
+        let options = options(args, &mut decisions)?;
+        let input_format = input_format(input, args.input_format.as_deref())?;
+        check_input(input)?;
+        Ok(Plan {
+            mesh: None,
+            inner_axis: None,
+            outer_axis: None,
+            thin: false,
+            poles: None,
+            stats: None,
             write: WriteOptions {
                 ascii: args.ascii,
                 float32: args.f32,
@@ -106,7 +122,7 @@ impl Plan {
             read: ReadOptions {
                 skip_invalid: args.skip_invalid,
             },
-            input,
+            input: input.to_owned(),
             input_format,
             options,
             threads: args.threads,
@@ -123,10 +139,7 @@ impl Plan {
             max_memory: args.max_memory,
             talk: Talk::new(args.quiet, args.verbose),
             decisions,
-        };
-        plan.check_places()?;
-        plan.check_idle_flags(&args)?;
-        Ok(plan)
+        })
     }
 
     /// Path and target of every result.
@@ -167,30 +180,10 @@ impl Plan {
                     .hint("send one of -o -, --stats - and --json to a file, or leave it out"),
             );
         }
-        let input = identity(&self.input);
-        let mut taken: Vec<PathBuf> = Vec::new();
-        for (path, target) in outs {
-            if !matches!(target, Target::File(_)) {
-                continue;
-            }
-            let place = identity(path);
-            if place == input {
-                return Err(Failure::usage(format!(
-                    "{}: this is the input, it would be overwritten",
-                    path.display()
-                ))
-                .hint(suggestion(&self.input)));
-            }
-            if taken.contains(&place) {
-                return Err(Failure::usage(format!(
-                    "{}: two results would be written to this file",
-                    path.display()
-                ))
-                .hint("give each result a file of its own"));
-            }
-            taken.push(place);
-        }
-        Ok(())
+        apart(&self.input, &outs).map_err(|failure| match failure.hint {
+            None => failure.hint(suggestion(&self.input)),
+            Some(_) => failure,
+        })
     }
 
     /// A flag that would change nothing is a misunderstanding.
@@ -303,6 +296,33 @@ fn comments(options: &Options) -> Vec<String> {
         format!("made by powercrust {}", env!("CARGO_PKG_VERSION")),
         format!("options {options}"),
     ]
+}
+
+/// Results lie in files of their own, none in that of the input.
+pub fn apart(input: &Path, outs: &[(&Path, &Target)]) -> Result<(), Failure> {
+    let input = identity(input);
+    let mut taken: Vec<PathBuf> = Vec::new();
+    for (path, target) in outs {
+        if !matches!(target, Target::File(_)) {
+            continue;
+        }
+        let place = identity(path);
+        if place == input {
+            return Err(Failure::usage(format!(
+                "{}: this is the input, it would be overwritten",
+                path.display()
+            )));
+        }
+        if taken.contains(&place) {
+            return Err(Failure::usage(format!(
+                "{}: two results would be written to this file",
+                path.display()
+            ))
+            .hint("give each result a file of its own"));
+        }
+        taken.push(place);
+    }
+    Ok(())
 }
 
 /// Judges where a result goes and in which format.

@@ -23,33 +23,7 @@ use super::stop;
 
 pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     let start = Instant::now();
-    for decision in &plan.decisions {
-        plan.talk.at(Talk::Verbose, decision);
-    }
-    let cloud = {
-        let bytes = read_bytes(&plan.input)?;
-        let format = cloud_format(plan, &bytes)?;
-        format::read_cloud(&bytes, format, &plan.read)
-            .map_err(|error| misread(&plan.input, &error, CloudFormat::extensions()))?
-    };
-    stop::orderly();
-    plan.talk.at(
-        Talk::Verbose,
-        format_args!(
-            "{}: {}, {}",
-            name(&plan.input),
-            cloud.report.format.name(),
-            counted(cloud.points.len(), "point", "points")
-        ),
-    );
-    for note in &cloud.report.notes {
-        plan.talk.at(Talk::Plain, format_args!("note: {note}"));
-    }
-    plan.talk.at(
-        Talk::Verbose,
-        format_args!("options {}", json!(plan.options)),
-    );
-
+    let cloud = read(plan)?;
     let estimate = estimate(cloud.points.len());
     plan.talk.at(
         Talk::Verbose,
@@ -109,6 +83,37 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     report.admit(plan, result.stats.crossings_left)?;
     report.tell(plan, start);
     Ok(ExitCode::SUCCESS)
+}
+
+/// The points, with what there is to say of them.
+pub fn read(plan: &Plan) -> Result<Cloud, Failure> {
+    for decision in &plan.decisions {
+        plan.talk.at(Talk::Verbose, decision);
+    }
+    let cloud = {
+        let bytes = read_bytes(&plan.input)?;
+        let format = cloud_format(plan, &bytes)?;
+        format::read_cloud(&bytes, format, &plan.read)
+            .map_err(|error| misread(&plan.input, &error, CloudFormat::extensions()))?
+    };
+    stop::orderly();
+    plan.talk.at(
+        Talk::Verbose,
+        format_args!(
+            "{}: {}, {}",
+            name(&plan.input),
+            cloud.report.format.name(),
+            counted(cloud.points.len(), "point", "points")
+        ),
+    );
+    for note in &cloud.report.notes {
+        plan.talk.at(Talk::Plain, format_args!("note: {note}"));
+    }
+    plan.talk.at(
+        Talk::Verbose,
+        format_args!("options {}", json!(plan.options)),
+    );
+    Ok(cloud)
 }
 
 /// An error rather than a process that the system ends: what a run is likely

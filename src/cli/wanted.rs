@@ -134,6 +134,58 @@ pub fn length(text: &str) -> Result<Length, String> {
     }
 }
 
+/// A length of either sign in the unit of the points, or a share of the diagonal of their
+/// box, with the words it was given in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distance {
+    pub said: String,
+    value: f64,
+    share: bool,
+}
+
+impl Distance {
+    /// The length, where the diagonal is so long.
+    pub fn of(&self, diagonal: f64) -> f64 {
+        match self.share {
+            true => self.value * diagonal,
+            false => self.value,
+        }
+    }
+
+    pub fn is_positive(&self) -> bool {
+        self.value > 0.0
+    }
+}
+
+/// Several lengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distances(pub Vec<Distance>);
+
+/// Reads a length, or a share of the diagonal with `%`.
+pub fn distance(text: &str) -> Result<Distance, String> {
+    let said = text.trim();
+    let (number, share) = match said.strip_suffix('%') {
+        Some(number) => (number, true),
+        None => (said, false),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(v) if v.is_finite() => Ok(Distance {
+            said: said.to_owned(),
+            value: if share { v / 100.0 } else { v },
+            share,
+        }),
+        _ => Err("expected a length, or a share of the diagonal such as 1%".to_owned()),
+    }
+}
+
+/// Reads lengths between commas.
+pub fn distances(text: &str) -> Result<Distances, String> {
+    text.split(',')
+        .map(distance)
+        .collect::<Result<_, _>>()
+        .map(Distances)
+}
+
 /// Reads a factor above 1.
 pub fn reduce(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -202,6 +254,11 @@ mod tests {
         assert_eq!(length("0.5"), Ok(Length::Absolute(0.5)));
         assert_eq!(length("2%").map(|l| l.of(50.0)), Ok(1.0));
         assert!(length("-1").is_err() && length("x%").is_err() && length("inf").is_err());
+        let list = distances("0.5,-1%, 2").unwrap().0;
+        let found: Vec<f64> = list.iter().map(|l| l.of(10.0)).collect();
+        assert_eq!(found, [0.5, -0.1, 2.0]);
+        assert_eq!(list[1].said, "-1%");
+        assert!(distances("1,").is_err() && distance("inf").is_err());
         assert_eq!(size("2G"), Ok(2 << 30));
         assert_eq!(size("1.5k"), Ok(1536));
         assert_eq!(size("100"), Ok(100));

@@ -83,6 +83,38 @@ impl Surface {
         })
     }
 
+    /// The point of the surface nearest to one, in the units of the mesh, up to
+    /// rounding; `None` for a surface without triangles and for a point that
+    /// is not finite. `scratch` is memory that many calls may share.
+    ///
+    /// ```
+    /// # use powercrust::mesh::{PolygonMesh, Surface};
+    /// # let corners = vec![[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]];
+    /// # let mut square = PolygonMesh::with_vertices(corners);
+    /// # square.push_face(&[0, 1, 2, 3]);
+    /// let surface = Surface::new(&square);
+    /// let mut scratch = Vec::new();
+    /// assert_eq!(surface.nearest([0.5, 1.0, -3.0], &mut scratch), Some([0.5, 1.0, 0.0]));
+    /// assert_eq!(surface.nearest([5.0, 1.0, 4.0], &mut scratch), Some([2.0, 1.0, 0.0]));
+    /// ```
+    pub fn nearest(&self, point: Point, scratch: &mut Vec<(f64, u32)>) -> Option<Point> {
+        if !point.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let p = self.frame.enter(point);
+        let best = std::cell::Cell::new((f64::INFINITY, [0.0; 3]));
+        self.bvh.nearest_sq(p, scratch, |slot| {
+            let q = nearest_in_triangle(p, &self.triangles[slot as usize]);
+            let found = norm_sq(sub(p, q));
+            if found < best.get().0 {
+                best.set((found, q));
+            }
+            found
+        });
+        let (found, q) = best.get();
+        found.is_finite().then(|| q.map(|x| self.frame.leave(x)))
+    }
+
     fn distance_with(&self, point: Point, stack: &mut Vec<(f64, u32)>) -> f64 {
         if !point.iter().all(|x| x.is_finite()) {
             return f64::NAN;
@@ -108,6 +140,29 @@ fn triangle_dist_sq(p: Point, &[a, b, c]: &[Point; 3]) -> f64 {
     (segment_dist_sq(p, a, ab, b))
         .min(segment_dist_sq(p, b, bc, c))
         .min(segment_dist_sq(p, c, ca, a))
+}
+
+/// The point of a triangle, which may be flat, nearest to one.
+fn nearest_in_triangle(p: Point, &[a, b, c]: &[Point; 3]) -> Point {
+    let (ab, bc, ca) = (sub(b, a), sub(c, b), sub(a, c));
+    let normal = cross(ab, sub(c, a));
+    let inside = |from: Point, side: Point| dot(cross(side, sub(p, from)), normal) > 0.0;
+    let length_sq = norm_sq(normal);
+    if length_sq > 0.0 && inside(a, ab) && inside(b, bc) && inside(c, ca) {
+        return sub(p, scale(normal, dot(sub(p, a), normal) / length_sq));
+    }
+    let on = |from: Point, side: Point| {
+        let length_sq = norm_sq(side);
+        let along = match length_sq > 0.0 {
+            true => (dot(sub(p, from), side) / length_sq).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        add(from, scale(side, along))
+    };
+    let ends = [on(a, ab), on(b, bc), on(c, ca)];
+    let off = |q: &Point| norm_sq(sub(p, *q));
+    let nearer = |best: Point, q: Point| if off(&q) < off(&best) { q } else { best };
+    ends.into_iter().fold(a, nearer)
 }
 
 /// The squared distance from a point to the segment from `a` to `b = a + ab`.

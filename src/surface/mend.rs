@@ -44,6 +44,7 @@ use super::mend_place::{settle, unlevel, Near, Sides};
 use super::mend_shell::{least_area, thin, Shells};
 use super::raw::{Crust, NONE};
 use crate::context::{Cancelled, Context, Stage};
+use crate::geom::vec3::{norm, sub};
 use crate::geom::{Ball, Point};
 use crate::mesh::clash::Clash;
 use crate::stats::Laps;
@@ -63,6 +64,10 @@ pub struct MendOptions<'a> {
     /// How far the surface may move to lose a vertex that is no sample, as a
     /// share of the sampling error `h² / 2r`; 0 leaves all that do no harm.
     pub flatness: f64,
+    /// How far a surface without samples may move to lose a vertex, in the
+    /// units of the mesh; `flatness` says nothing then, and vertices are not
+    /// moved onto the surface that the samples tell of.
+    pub tolerance: Option<f64>,
     /// New positions are rounded to single precision, as those given are.
     pub single: bool,
     /// Samples stay where they are to the last bit, also in planes.
@@ -125,7 +130,17 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
     let near = Near::of(&mesh);
     let mut spacing = near.spread(&mesh, |s| length((options.spacing)(s)));
     laps.lap("spacing");
-    if options.flatness > 0.0 {
+    if let Some(tolerance) = options.tolerance {
+        spacing = longest_edges(&mesh);
+        if tolerance > 0.0 {
+            let everywhere = vec![length(tolerance); spacing.len()];
+            let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &everywhere, cx)?;
+            (done.collapsed, done.flipped) = (collapsed, flipped);
+            mesh.compact(&mut spacing);
+            laps.lap("coarsen");
+            unlevel(&mut mesh, UNLEVEL, !options.keep_samples, &spacing, &round);
+        }
+    } else if options.flatness > 0.0 {
         let last = face_balls.iter().flatten().filter(|&&b| b != NONE).max();
         let balls: Vec<Option<Ball>> = (0..last.map_or(0, |b| b + 1))
             .into_par_iter()
@@ -202,6 +217,21 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
     laps.lap("finish");
     done.seconds = laps.seconds;
     Ok(done)
+}
+
+/// The longest edge at each vertex.
+fn longest_edges(mesh: &TriMesh) -> Vec<f64> {
+    let mut longest = vec![0.0f64; mesh.points.len()];
+    for t in &mesh.tris {
+        for k in 0..3 {
+            let [v, w] = [t[k], t[(k + 1) % 3]].map(|v| v as usize);
+            let length = norm(sub(mesh.points[v], mesh.points[w]));
+            for end in [v, w] {
+                longest[end] = longest[end].max(length);
+            }
+        }
+    }
+    longest
 }
 
 /// How far the surface may move near triangles that resist: nowhere else.

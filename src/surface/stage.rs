@@ -152,6 +152,7 @@ impl Job<'_> {
                 Faces::Triangles => options.flatness,
                 Faces::Polygons => 0.0,
             },
+            tolerance: None,
             single: options.single,
             keep_samples: options.interpolate == Some(true),
             ball: &|b| {
