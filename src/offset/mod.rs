@@ -18,11 +18,11 @@
 //! at edges, where few outer balls stand for a whole fan of directions, the
 //! faces are chamfers. So the power diagram says what the offset is (its
 //! parts, holes and cavities) and where, and the exact distance to the
-//! crust says how far: every vertex is moved to it ([`fit`]), and faces
-//! that are off it between their vertices are cut ([`refine`]), at creases
+//! crust says how far: every vertex is moved to it (`fit`), and faces
+//! that are off it between their vertices are cut (`refine`), at creases
 //! where the two sides meet.
 //! Planes of the crust are made exact first, where enough samples tell of
-//! them ([`level`]); their offsets are then planes at any distance.
+//! them (`level`); their offsets are then planes at any distance.
 //!
 //! Where the fitted surface crosses itself and mending cannot help, it is made
 //! again with the faces of the balls there as the paper has them; at last all
