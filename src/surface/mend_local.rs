@@ -227,20 +227,16 @@ impl Work<'_> {
         let mut best: Option<(usize, usize)> = None;
         let mut after = Vec::new();
         for (k, (_, change, touched, before)) in changes.iter().enumerate() {
-            // What cannot help more than the best so far need not be counted.
+            // What helps no more than the best so far is not counted to its end.
             let least = best.map_or(0, |(gain, _)| gain);
-            let most = before.saturating_sub(least);
-            if most == 0 {
-                continue;
-            }
+            let most = before.saturating_sub(least).max(1);
             self.mesh.begin();
             self.apply(*change);
             self.count(touched, most, &mut after);
             self.mesh.take_back();
-            if after.len() >= most {
-                continue;
+            if after.len() < most && *before > least {
+                best = Some((before - after.len(), k));
             }
-            best = Some((before - after.len(), k));
             // The cheapest that leaves nothing behind will do.
             if after.is_empty() {
                 break;
