@@ -134,7 +134,7 @@ impl Work<'_> {
             return false;
         }
         if s == t {
-            return self.flat(s) || is_thin(&mesh.place(s), self.thin);
+            return self.flat(s) || is_thin(mesh, s, self.thin);
         }
         !self.flat(s)
             && !self.flat(t)
@@ -174,7 +174,7 @@ impl Work<'_> {
                 continue;
             }
             let first = found.len();
-            if self.thin > 0.0 && is_thin(&place, self.thin) {
+            if self.thin > 0.0 && is_thin(mesh, s, self.thin) {
                 found.push((s, s));
             }
             let reach = Reach::of(&place);

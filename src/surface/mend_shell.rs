@@ -132,15 +132,80 @@ fn reach(mesh: &TriMesh) -> f64 {
 /// Triangles whose vector area is not above `least`, paired with themselves.
 pub(crate) fn thin(mesh: &TriMesh, least: f64) -> Vec<(u32, u32)> {
     (0..mesh.tris.len() as u32)
-        .filter(|&t| mesh.alive(t) && is_thin(&mesh.place(t), least))
+        .filter(|&t| mesh.alive(t) && is_thin(mesh, t, least))
         .map(|t| (t, t))
         .collect()
 }
 
-/// Whether the vector area of a triangle is not above `least` though its sides
-/// would allow for more.
-pub(crate) fn is_thin(t: &[Point; 3], least: f64) -> bool {
-    let n = cross(sub(t[1], t[0]), sub(t[2], t[0]));
-    let side = |a: Point, b: Point| norm_sq(sub(a, b));
-    n.iter().all(|x| x.abs() <= least) && side(t[0], t[1]).max(side(t[0], t[2])) > 16.0 * least
+/// Whether the vector area of a triangle is not above `least` though it need
+/// not be: its sides would allow for more, or a corner is no sample and can go.
+pub(crate) fn is_thin(mesh: &TriMesh, t: u32, least: f64) -> bool {
+    let place = mesh.place(t);
+    let n = cross(sub(place[1], place[0]), sub(place[2], place[0]));
+    let side = |k: usize| norm_sq(sub(place[0], place[k]));
+    n.iter().all(|x| x.abs() <= least)
+        && (side(1).max(side(2)) > 16.0 * least
+            || (mesh.tris[t as usize].iter()).any(|&v| mesh.samples[v as usize] == NONE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mend::{mend_crust, MendOptions};
+    use super::super::raw::Crust;
+    use super::*;
+    use crate::context::Context;
+    use crate::mesh::PolygonMesh;
+
+    /// Within a face of a tetrahedron three vertices that are no samples, 1e-8
+    /// apart and nearly on a line: other programs take the triangle between
+    /// them for one of no area.
+    #[test]
+    fn tiny_needles_of_free_vertices_go() {
+        let mut crust = Crust {
+            mesh: PolygonMesh::with_vertices(vec![
+                [0.0, 0.0, 0.0],
+                [1.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [0.3, 0.3, -1.0],
+                [0.4, 1e-5, 0.0],
+                [0.4 + 1e-8, 1e-5, 0.0],
+                [0.4 + 5e-9, 1e-5 + 1e-12, 0.0],
+            ]),
+            vertex_samples: vec![0, 1, 2, 3, NONE, NONE, NONE],
+            face_balls: Vec::new(),
+        };
+        for t in [
+            [4, 5, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [1, 2, 5],
+            [2, 6, 5],
+            [2, 0, 6],
+            [0, 4, 6],
+            [1, 0, 3],
+            [2, 1, 3],
+            [0, 2, 3],
+        ] {
+            crust.mesh.push_face(&t);
+            crust.face_balls.push([NONE; 2]);
+        }
+        let how = MendOptions {
+            flatness: 0.0,
+            tolerance: None,
+            single: false,
+            keep_samples: true,
+            spacing: &|_| 1.0,
+            ball: &|_| None,
+        };
+        let mended = mend_crust(crust, &how, &Context::default()).unwrap();
+        assert!(mended.left.is_empty() && mended.changes > 0);
+        let mesh = &mended.crust.mesh;
+        assert!(mesh.face_count() >= 4);
+        for f in 0..mesh.face_count() {
+            let t = mesh.face(f);
+            let [a, b, c] = [t[0], t[1], t[2]].map(|v| mesh.vertices[v as usize]);
+            let n = cross(sub(b, a), sub(c, a));
+            assert!(n.iter().any(|x| x.abs() > 1e-15), "{a:?} {b:?} {c:?}");
+        }
+    }
 }
