@@ -287,6 +287,13 @@ pub struct Reconstruct {
     #[arg(long, value_name = "SIZE", value_parser = wanted::size, help_heading = REPORTING)]
     pub max_memory: Option<u64>,
 
+    #[command(flatten)]
+    pub reporting: Reporting,
+}
+
+/// What commands that make something have in common.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Reporting {
     /// Print a summary of the run as one JSON object on standard output,
     /// errors included.
     #[arg(long, help_heading = REPORTING)]
@@ -409,23 +416,8 @@ pub struct Offset {
     #[arg(long, value_name = "SIZE", value_parser = wanted::size, help_heading = REPORTING)]
     pub max_memory: Option<u64>,
 
-    /// Print a summary of the run as one JSON object on standard output,
-    /// errors included.
-    #[arg(long, help_heading = REPORTING)]
-    pub json: bool,
-
-    /// Threads to use, by default all, at most 256. The result does not depend
-    /// on it.
-    #[arg(long, value_name = "N", help_heading = REPORTING)]
-    pub threads: Option<NonZeroUsize>,
-
-    /// Print nothing but errors.
-    #[arg(short, long, conflicts_with = "verbose", help_heading = REPORTING)]
-    pub quiet: bool,
-
-    /// Say more: -v options in effect and times.
-    #[arg(short, long, action = ArgAction::Count, help_heading = REPORTING)]
-    pub verbose: u8,
+    #[command(flatten)]
+    pub reporting: Reporting,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -41,9 +41,9 @@ fn dispatch(cli: Cli) -> ExitCode {
     stop::install();
     let json = match &cli.command {
         Some(Command::Check(check)) => check.json,
-        Some(Command::SimplifyMat(args)) => args.json,
-        Some(Command::Offset(offset)) => offset.json,
-        _ => cli.reconstruct.json,
+        Some(Command::SimplifyMat(args)) => args.reporting.json,
+        Some(Command::Offset(offset)) => offset.reporting.json,
+        _ => cli.reconstruct.reporting.json,
     };
     let done = match (cli.command, cli.generate) {
         (Some(Command::Check(args)), _) => check::check(&args),

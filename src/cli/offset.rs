@@ -100,7 +100,7 @@ pub fn offset(args: &Args) -> Result<ExitCode, Failure> {
     }
     let seconds = start.elapsed().as_secs_f64();
     plan.talk.at(Talk::Verbose, format_args!("{seconds:.2} s"));
-    if args.json {
+    if args.reporting.json {
         let object = json!({
             "ok": true,
             "powercrust": env!("CARGO_PKG_VERSION"),
@@ -131,10 +131,7 @@ fn reconstruct(args: &Args) -> Reconstruct {
         box_factor: args.box_factor,
         merge: args.merge,
         max_memory: args.max_memory,
-        json: args.json,
-        threads: args.threads,
-        quiet: args.quiet,
-        verbose: args.verbose,
+        reporting: args.reporting.clone(),
         ..Reconstruct::default()
     }
 }
@@ -185,7 +182,7 @@ fn outs(args: &Args, wanted: &[Distance]) -> Result<Vec<Out<MeshFormat>>, Failur
         None => failure.hint("give another name"),
         Some(_) => failure,
     })?;
-    if args.json && places.iter().any(|(_, t)| **t == Target::Stdout) {
+    if args.reporting.json && places.iter().any(|(_, t)| **t == Target::Stdout) {
         return Err(
             Failure::usage("more than one result would go to standard output")
                 .hint("send one of -o - and --json to a file, or leave it out"),

@@ -79,7 +79,7 @@ impl Plan {
             &args.poles,
             &args.stats,
         ];
-        if !args.json && !args.dry_run && results.iter().all(|path| path.is_none()) {
+        if !args.reporting.json && !args.dry_run && results.iter().all(|path| path.is_none()) {
             return Err(
                 Failure::usage("nowhere to write the mesh: -o is missing").hint(suggestion(&input))
             );
@@ -125,7 +125,7 @@ impl Plan {
             input: input.to_owned(),
             input_format,
             options,
-            threads: args.threads,
+            threads: args.reporting.threads,
             shells: ShellFilter {
                 keep: args.keep.unwrap_or_default(),
                 min_volume: args.min_volume,
@@ -133,11 +133,11 @@ impl Plan {
             },
             fewer: (args.faces.map(|n| Fewer::Faces(n as usize))).or(args.reduce.map(Fewer::OneIn)),
             attributes: args.attributes.clone().unwrap_or_default(),
-            json: args.json,
+            json: args.reporting.json,
             verify: args.verify,
             dry_run: args.dry_run,
             max_memory: args.max_memory,
-            talk: Talk::new(args.quiet, args.verbose),
+            talk: Talk::new(args.reporting.quiet, args.reporting.verbose),
             decisions,
         })
     }

@@ -1,11 +1,10 @@
 //! What was said to `powercrust simplify-mat`, recorded and not yet judged.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{Args, ValueEnum};
 
-use super::args::real;
+use super::args::{real, Reporting};
 use super::wanted::{length, Length};
 
 pub const EXAMPLES: &str = "\
@@ -23,7 +22,6 @@ Examples:
 const FILES: &str = "Input and output";
 const WHAT: &str = "What goes";
 const POINTS: &str = "Where the input is points";
-const REPORTING: &str = "Running and reporting";
 
 /// The unstable length taken where nothing is said, in hundredths of the
 /// diagonal.
@@ -160,22 +158,8 @@ pub struct SimplifyMat {
     #[arg(long, help_heading = POINTS)]
     pub skip_invalid: bool,
 
-    /// Print a summary as one JSON object on standard output, errors included.
-    #[arg(long, help_heading = REPORTING)]
-    pub json: bool,
-
-    /// Threads to use, by default all, at most 256. The result does not depend
-    /// on it.
-    #[arg(long, value_name = "N", help_heading = REPORTING)]
-    pub threads: Option<NonZeroUsize>,
-
-    /// Print nothing but errors.
-    #[arg(short, long, conflicts_with = "verbose", help_heading = REPORTING)]
-    pub quiet: bool,
-
-    /// Say more.
-    #[arg(short, long, action = ArgAction::Count, help_heading = REPORTING)]
-    pub verbose: u8,
+    #[command(flatten)]
+    pub reporting: Reporting,
 }
 
 /// Reads two numbers with a comma between.

@@ -34,7 +34,7 @@ enum Input {
 
 pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
     let start = Instant::now();
-    let talk = Talk::new(args.quiet, args.verbose);
+    let talk = Talk::new(args.reporting.quiet, args.reporting.verbose);
     let said = args.input_format.as_deref().map(named).transpose()?;
     check_input(&args.input)?;
     let target = place(args)?;
@@ -45,7 +45,7 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
     let input = input.unwrap_or_else(|| by_bytes(&bytes));
     let bar = Bar::new(talk);
     let context = Context {
-        threads: args.threads,
+        threads: args.reporting.threads,
         progress: &bar,
     };
     let outcome = balls(args, input, &bytes, &options, &context, talk).and_then(|(balls, side)| {
@@ -111,7 +111,7 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
         None => name(&args.input),
     };
     talk.at(Talk::Plain, line(&at, &report, &shape, seconds));
-    if args.json {
+    if args.reporting.json {
         let mut object = json!({
             "ok": true,
             "powercrust": env!("CARGO_PKG_VERSION"),
@@ -153,7 +153,7 @@ fn line(at: &str, report: &SimplifyReport, shape: &PowerShape, seconds: f64) -> 
 
 /// Where the axis goes; not over the input, no two results on one stream.
 fn place(args: &SimplifyMat) -> Result<Option<Out<AxisFormat>>, Failure> {
-    if args.output.is_none() && !args.json {
+    if args.output.is_none() && !args.reporting.json {
         return Err(Failure::usage("nowhere to write the axis: -o is missing").hint(
             "powercrust simplify-mat axis.ma --eps 1% -o simple.ma (see powercrust simplify-mat --help)",
         ));
@@ -181,7 +181,7 @@ fn place(args: &SimplifyMat) -> Result<Option<Out<AxisFormat>>, Failure> {
     if args.ascii && !ply {
         return Err(idle("--ascii", "PLY files"));
     }
-    let numbered = ply || out.format == AxisFormat::Json || args.json;
+    let numbered = ply || out.format == AxisFormat::Json || args.reporting.json;
     if args.structure && !numbered {
         return Err(idle("--structure", "PLY and JSON files and --json"));
     }
@@ -189,7 +189,7 @@ fn place(args: &SimplifyMat) -> Result<Option<Out<AxisFormat>>, Failure> {
         return Err(idle("--precision", "text formats"));
     }
     if out.target == Target::Stdout {
-        if args.json {
+        if args.reporting.json {
             return Err(
                 Failure::usage("more than one result would go to standard output")
                     .hint("send one of -o - and --json to a file, or leave it out"),
