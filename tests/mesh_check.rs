@@ -818,43 +818,6 @@ fn public_meshes_have_their_known_facts() {
     assert!(read >= 45, "{read} meshes read");
 }
 
-/// `cargo test --release --test mesh_check -- --ignored --nocapture speed`
-#[test]
-#[ignore = "measures"]
-fn speed() {
-    for (n, wave) in [(708, 0.0), (708, 0.001)] {
-        let mesh = wavy_sphere(n, wave);
-        for intersections in [false, true] {
-            let options = CheckOptions {
-                intersections,
-                ..CheckOptions::default()
-            };
-            let start = std::time::Instant::now();
-            let report = check(&mesh, &options, &Context::default()).unwrap();
-            eprintln!(
-                "{} triangles, wave {wave}, intersections {intersections}: {:?}, {} cross",
-                report.triangles,
-                start.elapsed(),
-                report.counts.crossing_faces,
-            );
-        }
-        let start = std::time::Instant::now();
-        let surface = Surface::new(&mesh);
-        let built = start.elapsed();
-        let start = std::time::Instant::now();
-        let points: Vec<Point> = (mesh.vertices.iter())
-            .map(|p| p.map(|x| x * 1.01))
-            .collect();
-        let far = surface.distances(&points, &Context::default()).unwrap();
-        let far = far.into_iter().fold(0.0, f64::max);
-        eprintln!(
-            "  tree in {built:?}, {} distances in {:?}, up to {far}",
-            points.len(),
-            start.elapsed(),
-        );
-    }
-}
-
 /// Found by `scripts/guarantee`: in floating point the volume of a shell that
 /// is thin or tiny drowns in rounding, and its sign with it.
 #[test]

@@ -5,9 +5,9 @@ use crate::run::Run;
 use divan::counter::ItemsCount;
 use divan::Bencher;
 use powercrust::label::{hold, label, refine, LabelOptions, Neighbours, MOST_UNHELD};
-use powercrust::mesh::{check, CheckOptions};
+use powercrust::mesh::{check, CheckOptions, Surface};
 use powercrust::surface::{self, mend_crust, CleanOptions, Crust, MendOptions};
-use powercrust::{reconstruct, Context, Options, PolygonMesh};
+use powercrust::{reconstruct, Context, Options, Point, PolygonMesh};
 
 const SURFACES: [Cloud; 2] = [Cloud::Ellipsoid, Cloud::Torus];
 
@@ -111,6 +111,21 @@ fn check_mesh(bencher: Bencher, cloud: Cloud) {
     bencher
         .counter(faces(&mesh))
         .bench_local(|| check(&mesh, &CheckOptions::default(), &Context::default()).unwrap());
+}
+
+/// From a point beside each vertex, the tree of the surface included.
+#[divan::bench(args = SURFACES)]
+fn distances(bencher: Bencher, cloud: Cloud) {
+    let mesh = surface::triangulate(&polygons(stages(cloud))).mesh;
+    let beside: Vec<Point> = (mesh.vertices.iter())
+        .map(|p| p.map(|x| x * 1.01))
+        .collect();
+    bencher
+        .counter(ItemsCount::new(beside.len()))
+        .bench_local(|| {
+            let surface = Surface::new(&mesh);
+            surface.distances(&beside, &Context::default()).unwrap()
+        });
 }
 
 #[divan::bench(args = SURFACES)]
