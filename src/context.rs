@@ -12,6 +12,8 @@ use std::ops::ControlFlow;
 pub enum Stage {
     /// Rounding to the lattice, merging duplicates.
     Samples,
+    /// How noisy the samples are, and moving them onto the surface.
+    Noise,
     /// Delaunay triangulation of the samples and the frame.
     Delaunay,
     /// Poles and polar balls.
@@ -35,6 +37,7 @@ impl Stage {
     pub fn name(self) -> &'static str {
         match self {
             Stage::Samples => "samples",
+            Stage::Noise => "noise",
             Stage::Delaunay => "delaunay",
             Stage::Poles => "poles",
             Stage::Power => "power",

@@ -20,7 +20,7 @@
 //!
 //! **The whole way**
 //! - [`reconstruct`]: points in, [`Reconstruction`] out
-//! - [`Options`], [`Faces`]: what may be said; the default says nothing
+//! - [`Options`], [`Faces`], [`NoiseOption`]: what may be said; the default says nothing
 //! - [`Context`], [`Progress`], [`Silent`], [`Stage`], [`Cancelled`]: threads, progress, a stop button
 //! - [`Error`], [`SampleError`]: why there is no surface
 //! - [`Stats`]: counts, timings, options of a run
@@ -34,6 +34,7 @@
 //!
 //! **One stage at a time** (section 5 of the paper)
 //! - [`delaunay::samples`]: finite, distinct points on a lattice
+//! - [`noise::treat`]: samples amid noise moved onto the surface
 //! - [`delaunay::delaunay`]: their Delaunay triangulation
 //! - [`poles::poles`]: poles and polar balls, the skinniness test
 //! - [`simplify::merge_redundant`]: one ball for many that say the same
@@ -82,6 +83,7 @@ pub mod io;
 pub mod label;
 pub mod memory;
 pub mod mesh;
+pub mod noise;
 pub mod offset;
 pub mod options;
 pub mod pipeline;
@@ -97,7 +99,7 @@ pub use context::{Cancelled, Context, Progress, Silent, Stage};
 pub use error::{Error, SampleError};
 pub use geom::{Ball, Bounds, Point, Side};
 pub use mesh::PolygonMesh;
-pub use options::{Faces, Options};
+pub use options::{Faces, NoiseOption, Options};
 pub use pipeline::{reconstruct, PolarBall, Reconstruction};
 pub use stats::Stats;
 pub use surface::{Crust, PowerShape};

@@ -11,6 +11,10 @@ pub struct Options {
     /// Drop both poles of a sample whose cell fails the skinniness test
     /// (section 6.2), so that faces extend to sharp edges. Needs `lambda`.
     pub sharp: bool,
+    /// Whether samples amid noise are moved onto the surface before anything
+    /// else. With [`NoiseOption::Auto`] a cloud that is not noisy gives the
+    /// same result, to the last bit, as with [`NoiseOption::Off`].
+    pub noise: NoiseOption,
     /// Angle in degrees, in (90, 180), above which two balls intersect deeply
     /// and share evidence (section 5.2).
     pub deep_angle: f64,
@@ -36,6 +40,19 @@ pub struct Options {
     pub single: bool,
 }
 
+/// What to take for noise.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NoiseOption {
+    /// What the samples say themselves.
+    Auto,
+    /// Nothing: the surface goes through the samples.
+    Off,
+    /// Noise of this standard deviation, in the input's unit, positive and
+    /// finite.
+    Scale(f64),
+}
+
 /// The kind of faces wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -51,6 +68,7 @@ impl Default for Options {
         Options {
             lambda: None,
             sharp: false,
+            noise: NoiseOption::Auto,
             deep_angle: 113.578_178_478_201_83,
             box_factor: 5.0,
             merge: 0.5,
@@ -94,6 +112,10 @@ impl Options {
         }
         if self.sharp && self.lambda.is_none() {
             within("sharp", 1.0, false, "lambda beside it")?;
+        }
+        if let NoiseOption::Scale(scale) = self.noise {
+            let ok = scale > 0.0 && scale.is_finite();
+            within("noise", scale, ok, "auto, off, or a positive length")?;
         }
         let angle = self.deep_angle;
         let ok = angle > 90.0 && angle < 180.0;

@@ -9,10 +9,12 @@ use crate::delaunay::{delaunay, samples, Lattice};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{
-    energy, hold, label, opposites, refine, Evidence, LabelOptions, Neighbours, MOST_UNHELD,
+    drop_askew, energy, hold, label, opposites, refine, Evidence, LabelOptions, Neighbours,
+    MOST_UNHELD,
 };
 use crate::memory;
-use crate::options::Options;
+use crate::noise::treat;
+use crate::options::{NoiseOption, Options};
 use crate::poles::{poles, BallLattice, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
@@ -41,6 +43,9 @@ pub struct Reconstruction {
     /// For each sample id (the `vertex_samples` of the crust) the index of
     /// the first input point at that place.
     pub sample_source: Vec<u32>,
+    /// Where each sample lies, if samples amid noise were moved
+    /// ([`Options::noise`]); empty if all lie where they were given.
+    pub moved: Vec<Point>,
     /// The power diagram of the balls; its sites are in steps of the lattice
     /// of balls.
     pub power: PowerDiagram,
@@ -95,7 +100,10 @@ impl Reconstruction {
     pub fn contacts(&self, points: &[Point]) -> Vec<Contact> {
         let of_ball = |b: u32| {
             let samples = self.touching.at(b);
-            let place = |&s: &u32| points[self.sample_source[s as usize] as usize];
+            let place = |&s: &u32| match self.moved.get(s as usize) {
+                Some(&moved) => moved,
+                None => points[self.sample_source[s as usize] as usize],
+            };
             let places: Vec<Point> = samples.iter().map(place).collect();
             let wider = |most: f64, &s: &u32| most.max(self.spacing[s as usize]);
             Contact::of(&places, samples.iter().fold(0.0, wider))
@@ -144,6 +152,21 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         resolves(&samples.lattice)?;
     }
     clock.lap(Stage::Samples, &mut stats);
+
+    // Samples amid noise move onto the surface.
+    let mut normals = Vec::new();
+    match treat(&samples, options.noise, context)? {
+        Ok(treated) => {
+            stats.noise = treated.report;
+            let (moved, before) = samples.moved(&treated.points, options.box_factor)?;
+            samples = moved;
+            normals.extend(before.iter().map(|&s| treated.normals[s as usize]));
+        }
+        Err(report) => stats.noise = report,
+    }
+    if options.noise != NoiseOption::Off {
+        clock.lap(Stage::Noise, &mut stats);
+    }
     let mut delaunay = delaunay(&samples, context)?;
     stats.delaunay_cells = delaunay.complex.len();
     stats.delaunay_predicates = delaunay.counts;
@@ -175,7 +198,8 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
 
     // 4. Labels, by the geometry on the lattice: no overflow at any scale.
     let on_lattice = poles.balls.on_lattice();
-    let pairs = opposites(&poles.of_sample, &delaunay.sites, &on_lattice);
+    let mut pairs = opposites(&poles.of_sample, &delaunay.sites, &on_lattice);
+    drop_askew(&mut pairs, &delaunay.sites, &on_lattice, &normals);
     let evidence = Evidence {
         balls: &on_lattice,
         outer: &poles.balls.touches_frame,
@@ -221,6 +245,10 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         stats.faces = crust.mesh.face_count();
         stats.volume = crust.mesh.volume();
     }
+    let moved = match stats.noise.treated {
+        true => samples.points,
+        false => Vec::new(),
+    };
     let lattice = samples.lattice;
     let balls = (poles.balls.on_lattice().iter())
         .zip(&sides)
@@ -250,6 +278,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         crust,
         balls,
         sample_source: samples.source,
+        moved,
         power,
         touching,
         spacing,

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::label::{Energy, Held};
 use crate::mesh::Shape;
+use crate::noise::NoiseReport;
 use crate::options::Options;
 use crate::predicates::Counts;
 
@@ -16,6 +17,8 @@ pub struct Stats {
     pub samples: usize,
     /// Points merged into an equal one.
     pub duplicates: usize,
+    /// What was found and done about noise.
+    pub noise: NoiseReport,
     /// Cells of the Delaunay triangulation, frame included.
     pub delaunay_cells: usize,
     /// Distinct polar balls chosen.
@@ -99,6 +102,7 @@ impl Stats {
             points: 0,
             samples: 0,
             duplicates: 0,
+            noise: NoiseReport::default(),
             delaunay_cells: 0,
             poles: 0,
             skinny_samples: 0,

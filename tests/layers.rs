@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The rows, top first, and why each stands where it does.
-const ROWS: [(&[&str], &str); 13] = [
+const ROWS: [(&[&str], &str); 14] = [
     (
         &["geom", "context", "memory"],
         "plain values, what every long call receives, what the system tells",
@@ -24,6 +24,7 @@ const ROWS: [(&[&str], &str); 13] = [
         "cells and neighbours; coordinates only through predicates",
     ),
     (&["delaunay"], "samples, and the triangulation of points"),
+    (&["noise"], "samples onto the surface that noise hides"),
     (
         &["power"],
         "the triangulation of balls; takes the formula of centres and the \
@@ -64,7 +65,7 @@ fn home(name: &str) -> &str {
         "Error" | "SampleError" => "error",
         "Ball" | "Bounds" | "Point" | "Side" => "geom",
         "PolygonMesh" => "mesh",
-        "Faces" | "Options" => "options",
+        "Faces" | "NoiseOption" | "Options" => "options",
         "reconstruct" | "PolarBall" | "Reconstruction" => "pipeline",
         "Stats" => "stats",
         "Crust" | "PowerShape" => "surface",

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat};
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::Options;
+use powercrust::{NoiseOption, Options};
 
 use super::formats::dotted;
 use super::simplify_args::{self, SimplifyMat};
@@ -174,6 +174,16 @@ pub struct Reconstruct {
     /// 0.4 unless you say otherwise.
     #[arg(long, help_heading = METHOD)]
     pub sharp: bool,
+
+    /// What to take for noise: auto, off, or its standard deviation in the
+    /// input's unit.
+    ///
+    /// Samples amid noise are moved onto a smooth surface fitted to those
+    /// around them before anything else. `auto` measures noise and moves
+    /// nothing where it is less than a twentieth of the spacing between
+    /// samples: clean input comes out as with `off`. By default auto.
+    #[arg(long, value_name = "NOISE", value_parser = wanted::noise, allow_hyphen_values = true, help_heading = METHOD)]
+    pub noise: Option<NoiseOption>,
 
     #[arg(long, help = deep_angle_help(), value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub deep_angle: Option<f64>,

@@ -258,6 +258,7 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
     let options = Options {
         lambda,
         sharp: args.sharp,
+        noise: args.noise.unwrap_or(plain.noise),
         deep_angle: args.deep_angle.unwrap_or(plain.deep_angle),
         box_factor: args.box_factor.unwrap_or(plain.box_factor),
         merge: args.merge.unwrap_or(plain.merge),

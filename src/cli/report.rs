@@ -151,6 +151,7 @@ impl Report {
         summary["ok"] = json!(true);
         summary["options"] = json!(plan.options);
         summary["samples"] = json!(result.stats.samples);
+        summary["noise"] = json!(result.stats.noise);
         summary["duplicates"] = json!(result.stats.duplicates);
         Ok(Report {
             rounded: rounded && !findings.is_watertight(),

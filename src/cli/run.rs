@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
 use powercrust::memory::{estimate, of_machine, Estimate};
+use powercrust::noise::NoiseReport;
 use powercrust::tetra::Complex;
 use powercrust::{Bounds, Context, Error, Options, Point, Reconstruction, SampleError};
 use serde_json::json;
@@ -77,6 +78,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
             ),
         );
     }
+    tell_noise(plan, &result.stats.noise);
 
     report.verdict(plan)?;
     write_results(plan, &result, &product, &report)?;
@@ -114,6 +116,35 @@ pub fn read(plan: &Plan) -> Result<Cloud, Failure> {
         format_args!("options {}", json!(plan.options)),
     );
     Ok(cloud)
+}
+
+/// Says that samples were moved, and why or why not.
+fn tell_noise(plan: &Plan, noise: &NoiseReport) {
+    if let Some(level) = &noise.level {
+        plan.talk.at(
+            Talk::Verbose,
+            format_args!(
+                "--noise auto: quadrics through 12 samples miss them by {:.3} of the spacing, those through 24 by {:.2} times as much, through 48 by {:.2} times more: {}",
+                level.share,
+                level.growth,
+                level.further_growth,
+                if level.noisy { "noise" } else { "no noise" }
+            ),
+        );
+    }
+    if noise.treated {
+        plan.talk.at(
+            Talk::Plain,
+            format_args!(
+                "note: noise of {:.3e}, {:.2} of the spacing: {} moved onto a surface through {} neighbours, by {:.3e} on average; --noise off keeps them",
+                noise.scale,
+                noise.share,
+                counted(noise.moved, "sample", "samples"),
+                noise.neighbours,
+                noise.mean_move
+            ),
+        );
+    }
 }
 
 /// An error rather than a process that the system ends: what a run is likely

@@ -3,6 +3,7 @@
 
 use powercrust::io::MeshFormat;
 use powercrust::surface::{Keep, MinVolume};
+use powercrust::NoiseOption;
 
 /// The names of `--attributes` that are not columns of the input.
 pub const OWN: [&str; 8] = [
@@ -186,6 +187,18 @@ pub fn distances(text: &str) -> Result<Distances, String> {
         .map(Distances)
 }
 
+/// Reads `auto`, `off` or a length.
+pub fn noise(text: &str) -> Result<NoiseOption, String> {
+    match text {
+        "auto" => Ok(NoiseOption::Auto),
+        "off" => Ok(NoiseOption::Off),
+        _ => match text.parse::<f64>() {
+            Ok(scale) if scale > 0.0 && scale.is_finite() => Ok(NoiseOption::Scale(scale)),
+            _ => Err("expected auto, off or a length above 0".to_owned()),
+        },
+    }
+}
+
 /// Reads a factor above 1.
 pub fn reduce(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -250,6 +263,9 @@ mod tests {
         assert!(keep("0").is_err() && keep("some").is_err());
         assert_eq!(min_volume("1%"), Ok(MinVolume::Share(0.01)));
         assert_eq!(min_volume("2.5"), Ok(MinVolume::Absolute(2.5)));
+        assert_eq!(noise("auto"), Ok(NoiseOption::Auto));
+        assert_eq!(noise("0.5"), Ok(NoiseOption::Scale(0.5)));
+        assert!(noise("0").is_err() && noise("-1").is_err() && noise("some").is_err());
         assert!(min_volume("-1").is_err() && min_volume("101%").is_err());
         assert_eq!(length("0.5"), Ok(Length::Absolute(0.5)));
         assert_eq!(length("2%").map(|l| l.of(50.0)), Ok(1.0));

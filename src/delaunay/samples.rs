@@ -108,6 +108,31 @@ impl Samples {
         self.points.len()
     }
 
+    /// The samples at other places, one for each, in the user's coordinates;
+    /// beside them which sample each was before.
+    ///
+    /// # Errors
+    /// [`SampleError`], as [`samples`].
+    pub fn moved(
+        &self,
+        points: &[Point],
+        box_factor: f64,
+    ) -> Result<(Samples, Vec<u32>), SampleError> {
+        let mut moved = samples(points, box_factor)?;
+        moved.of_input = (self.of_input.iter())
+            .map(|&s| moved.of_input[s as usize])
+            .collect();
+        let before = moved.source.clone();
+        for s in &mut moved.source {
+            *s = self.source[*s as usize];
+        }
+        moved.multiplicity = vec![0; moved.len()];
+        for &s in &moved.of_input {
+            moved.multiplicity[s as usize] += 1;
+        }
+        Ok((moved, before))
+    }
+
     /// Whether there are no samples (never, once made).
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()

@@ -1,0 +1,108 @@
+//! Noise: recognised without a parameter, seen through, and nothing done
+//! where there is none.
+
+use powercrust::{reconstruct, Context, NoiseOption, Options, Point};
+
+/// Numbers in [0, 1), the same each time.
+fn numbers(mut state: u64) -> impl FnMut() -> f64 {
+    move || {
+        state =
+            (state.wrapping_mul(6_364_136_223_846_793_005)).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// A point of the unit sphere, and a Gaussian vector of this deviation.
+fn noisy_sphere(count: usize, deviation: f64) -> Vec<Point> {
+    let mut next = numbers(7);
+    (0..count)
+        .map(|_| {
+            let mut gauss = || {
+                let (u, v) = (1.0 - next(), next());
+                (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+            };
+            let way = [gauss(), gauss(), gauss()];
+            let length = way.iter().map(|v| v * v).sum::<f64>().sqrt();
+            way.map(|v| v / length + deviation * gauss())
+        })
+        .collect()
+}
+
+fn with(noise: NoiseOption) -> Options {
+    Options {
+        noise,
+        ..Options::default()
+    }
+}
+
+#[test]
+fn clean_samples_are_left_alone() {
+    let points = noisy_sphere(1500, 0.0);
+    let run = |noise| reconstruct(&points, &with(noise), &Context::default()).unwrap();
+    let (auto, off) = (run(NoiseOption::Auto), run(NoiseOption::Off));
+    assert_eq!(auto.crust.mesh, off.crust.mesh);
+    assert!(!auto.stats.noise.treated);
+    assert!(!auto.stats.noise.level.unwrap().noisy);
+}
+
+#[test]
+fn noise_is_found_and_seen_through() {
+    let deviation = 0.03;
+    let points = noisy_sphere(4000, deviation);
+    let run = |noise| reconstruct(&points, &with(noise), &Context::default()).unwrap();
+    let off_by = |result: &powercrust::Reconstruction| {
+        let vertices = &result.crust.mesh.vertices;
+        let off = |p: &Point| (p.iter().map(|v| v * v).sum::<f64>().sqrt() - 1.0).abs();
+        vertices.iter().map(off).sum::<f64>() / vertices.len() as f64
+    };
+    let auto = run(NoiseOption::Auto);
+    let found = &auto.stats.noise;
+    assert!(found.treated);
+    assert!(
+        (found.scale / deviation - 1.0).abs() < 0.15,
+        "{}",
+        found.scale
+    );
+    assert!(off_by(&auto) < 0.3 * deviation, "{}", off_by(&auto));
+    let findings = powercrust::mesh::check(
+        &auto.crust.mesh,
+        &powercrust::mesh::CheckOptions::default(),
+        &Context::default(),
+    )
+    .unwrap();
+    assert!(findings.is_watertight());
+    assert_eq!(findings.genus, Some(0));
+    let kept = off_by(&run(NoiseOption::Off));
+    assert!(off_by(&auto) < 0.5 * kept, "{} and {kept}", off_by(&auto));
+    // The same, told how much noise there is.
+    let told = run(NoiseOption::Scale(deviation));
+    assert!(off_by(&told) < 0.3 * deviation);
+    assert_eq!(told.stats.noise.level, None);
+}
+
+#[test]
+fn neither_threads_nor_the_order_of_the_input_matter() {
+    let points = noisy_sphere(1200, 0.03);
+    let one = reconstruct(&points, &Options::default(), &Context::default()).unwrap();
+    assert!(one.stats.noise.treated);
+    let mut other = points.clone();
+    other.reverse();
+    let context = Context {
+        threads: std::num::NonZeroUsize::new(3),
+        ..Context::default()
+    };
+    let other = reconstruct(&other, &Options::default(), &context).unwrap();
+    assert_eq!(one.crust.mesh, other.crust.mesh);
+    // Vertices still know the input points that they come from.
+    for (v, &s) in one.crust.vertex_samples.iter().enumerate() {
+        if s != u32::MAX {
+            let from = points[one.sample_source[s as usize] as usize];
+            let to = one.crust.mesh.vertices[v];
+            let way = (0..3)
+                .map(|k| (from[k] - to[k]).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            assert!(way < 0.2, "{way}");
+        }
+    }
+}
