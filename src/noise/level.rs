@@ -21,7 +21,7 @@ use super::near::Near;
 use crate::geom::vec3::sub;
 
 /// Samples looked at.
-const LOOKED_AT: usize = 2000;
+const LOOKED_AT: usize = 500;
 
 /// Clouds smaller than this say nothing about noise.
 const FEWEST: usize = 200;
