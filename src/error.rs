@@ -35,6 +35,9 @@ pub enum Error {
         /// The largest radius of an inner ball.
         depth: f64,
     },
+    /// Balls of which none is inner, or none with a radius and a cell.
+    #[error("there is no inner ball with a cell of its own: nothing is inside")]
+    NoInnerBalls,
     /// An index would not fit in 32 bits.
     #[error("too large: {what} would need {count} entries, the limit is {limit}")]
     TooLarge {

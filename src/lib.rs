@@ -50,7 +50,8 @@
 //! - [`PowerShape::thin`], [`PowerShape::betti`]: without flat tetrahedra; parts, tunnels, voids
 //! - [`simplify::Contact`]: what the samples on a ball span
 //!
-//! **Made from a result**
+//! **Made from a result, or from balls**
+//! - [`inverse::crust_of_balls`]: the surface that a medial axis stands for; unions of balls
 //! - [`offset::Offsets`]: surfaces at a distance, shells
 //!
 //! **Meshes**
@@ -78,7 +79,9 @@ pub mod axis;
 pub mod context;
 pub mod delaunay;
 pub mod error;
+mod fit;
 pub mod geom;
+pub mod inverse;
 pub mod io;
 pub mod label;
 pub mod memory;

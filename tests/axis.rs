@@ -59,7 +59,9 @@ fn unstable_and_redundant_balls_go_and_no_others() {
     };
     let mut redundant = 0;
     for b in 0..balls.balls.len() {
-        let unstable = balls.contacts[b].diameter <= eps;
+        // Outer balls that touch few samples still bound what is convex.
+        let inner = balls.sides[b] == Side::Inner;
+        let unstable = inner && balls.contacts[b].diameter <= eps;
         if kept.contains(&(b as u32)) {
             assert!(!unstable, "ball {b}");
         } else if !unstable {
@@ -263,7 +265,8 @@ fn filters_do_what_their_papers_say() {
         assert!(kept.balls.len() < balls.balls.len());
         for b in 0..balls.balls.len() {
             let there = of(&kept, balls.ids[b]).is_some();
-            assert_eq!(there, stays(&balls, b), "{options:?}: ball {b}");
+            let outer = balls.sides[b] == Side::Outer;
+            assert_eq!(there, outer || stays(&balls, b), "{options:?}: ball {b}");
         }
     }
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The rows, top first, and why each stands where it does.
-const ROWS: [(&[&str], &str); 14] = [
+const ROWS: [(&[&str], &str); 16] = [
     (
         &["geom", "context", "memory"],
         "plain values, what every long call receives, what the system tells",
@@ -45,12 +45,22 @@ const ROWS: [(&[&str], &str); 14] = [
         "labelled cells become faces; its last step (surface::stage) reads \
          options and writes stats",
     ),
+    (
+        &["fit"],
+        "solids without samples: from labelled cells to a mended surface, \
+         moved to where a field says",
+    ),
     (&["pipeline"], "the stages in order"),
     (
         &["attributes", "axis", "offset"],
         "what a result's vertices and faces inherit from points and balls; \
          what is left of its medial axis; surfaces at a distance. None needs \
          the others",
+    ),
+    (
+        &["inverse"],
+        "from labelled balls back to a surface, with outer ones made for \
+         those that have none",
     ),
     (
         &["io"],

@@ -6,6 +6,7 @@ use super::{dual, estimate};
 use crate::context::{Context, Portion};
 use crate::delaunay::times_power;
 use crate::error::{Error, SampleError};
+use crate::geom::vec3::norm;
 use crate::geom::{Ball, Bounds, Point, Side};
 use crate::pipeline::Reconstruction;
 use crate::power::{power_diagram, PowerDiagram};
@@ -21,6 +22,22 @@ pub(super) const STEP: f64 = 1024.0;
 /// Balls read from a file reach no farther than `2^REACH` steps of the
 /// balls' lattice from its origin.
 const REACH: i32 = 34;
+
+/// The map between the user's coordinates and the sites of the diagram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Grid {
+    /// The user's coordinates of the origin.
+    pub centre: Point,
+    /// A step is `2^-exponent` of the user's unit.
+    pub exponent: i32,
+}
+
+impl Grid {
+    /// The user's coordinates of a place among the sites.
+    pub fn to_user(self, p: Point) -> Point {
+        [0, 1, 2].map(|k| self.centre[k] + times_power(p[k], -self.exponent))
+    }
+}
 
 /// Balls of a medial axis, inner and outer, with their power diagram.
 #[derive(Clone, Debug)]
@@ -44,6 +61,8 @@ pub struct LabelledBalls {
     pub diagonal: f64,
     /// The power diagram; its sites are those of the balls.
     power: PowerDiagram,
+    /// Where the sites of the diagram lie.
+    lattice: Grid,
     /// Whether the balls of both sides are there, so that the diagram tells
     /// which of them are joined.
     both: bool,
@@ -68,6 +87,10 @@ impl LabelledBalls {
             places: points.to_vec(),
             diagonal: Bounds::of(points).map_or(0.0, |b| b.diagonal()),
             power: result.power,
+            lattice: Grid {
+                centre: result.lattice.centre,
+                exponent: result.lattice.exponent - result.ball_lattice.shift,
+            },
             both: true,
         }
     }
@@ -159,6 +182,36 @@ impl LabelledBalls {
             .count()
     }
 
+    /// The power diagram.
+    pub(crate) fn power(&self) -> &PowerDiagram {
+        &self.power
+    }
+
+    /// Where the sites of the diagram lie.
+    pub(crate) fn grid(&self) -> Grid {
+        self.lattice
+    }
+
+    /// The diagonal of the box of the inner balls, 0 if there are none.
+    pub fn inner_diagonal(&self) -> f64 {
+        let Some(bounds) = self.bounds(Side::Inner) else {
+            return 0.0;
+        };
+        // At a size near 1: squares of tiny and huge lengths are no numbers.
+        let sides = [0, 1, 2].map(|k| bounds.max[k] / 2.0 - bounds.min[k] / 2.0);
+        let longest = sides.into_iter().fold(0.0, f64::max);
+        match longest > 0.0 {
+            true => 2.0 * longest * norm(sides.map(|s| s / longest)),
+            false => 0.0,
+        }
+    }
+
+    /// The box of the balls of one side.
+    pub(crate) fn bounds(&self, side: Side) -> Option<Bounds> {
+        let own = self.balls.iter().zip(&self.sides);
+        reach(own.filter(|(_, &s)| s == side).map(|(b, _)| b))
+    }
+
     /// Centre and squared radius of each ball on the lattice of the diagram.
     pub(super) fn sites(&self) -> &[Site] {
         &self.power.sites[..self.balls.len()]
@@ -200,7 +253,7 @@ impl LabelledBalls {
     }
 
     /// The balls and simplices of one side, with our ids.
-    pub(super) fn complex(&self, side: Side) -> PowerShape {
+    pub(crate) fn complex(&self, side: Side) -> PowerShape {
         if self.both {
             power_shape(&self.power, &self.balls, &self.sides, side)
         } else {
@@ -229,7 +282,7 @@ impl LabelledBalls {
     }
 
     /// Which balls have a cell in the diagram.
-    pub(super) fn visible(&self) -> Vec<bool> {
+    pub(crate) fn visible(&self) -> Vec<bool> {
         let mut visible = vec![true; self.balls.len()];
         for &b in &self.power.hidden {
             visible[b as usize] = false;
@@ -238,7 +291,7 @@ impl LabelledBalls {
     }
 
     /// Which balls have cells side by side.
-    pub(super) fn neighbours(&self, progress: &Portion) -> Result<Edges, Error> {
+    pub(crate) fn neighbours(&self, progress: &Portion) -> Result<Edges, Error> {
         Ok(Edges::of(&self.power.complex, self.balls.len(), progress)?)
     }
 }
@@ -257,7 +310,7 @@ fn of_shape(shape: &PowerShape, context: &Context) -> Result<LabelledBalls, Erro
         false => [&shape.contacts[..], &shape.other_contacts[..]].concat(),
         true => estimate::contacts(shape),
     };
-    let sites = sites(&balls)?;
+    let (sites, lattice) = sites(&balls)?;
     // Along the curve; of balls at one place the largest comes first.
     let half = 2f64.powi(REACH);
     let mut order: Vec<(u64, u32)> = (0..balls.len())
@@ -300,6 +353,7 @@ fn of_shape(shape: &PowerShape, context: &Context) -> Result<LabelledBalls, Erro
         places: Vec::new(),
         diagonal: reach(shape.balls.iter()).map_or(0.0, |b| b.diagonal()),
         both: sides.iter().any(|&s| s != sides[0]),
+        lattice,
         sides,
     })
 }
@@ -315,10 +369,11 @@ fn reach<'a>(balls: impl Iterator<Item = &'a Ball>) -> Option<Bounds> {
 }
 
 /// The balls on a lattice that holds them all.
-fn sites(balls: &[Ball]) -> Result<Vec<Site>, Error> {
-    let Some(bounds) = reach(balls.iter()) else {
-        return Ok(Vec::new());
-    };
+fn sites(balls: &[Ball]) -> Result<(Vec<Site>, Grid), Error> {
+    let bounds = reach(balls.iter()).unwrap_or(Bounds {
+        min: [0.0; 3],
+        max: [0.0; 3],
+    });
     let middle = [0, 1, 2].map(|k| bounds.min[k] / 2.0 + bounds.max[k] / 2.0);
     let half = (0..3).fold(0.0f64, |half, k| half.max(bounds.max[k] - middle[k]));
     const WIDEST: f64 = 1e300;
@@ -334,12 +389,16 @@ fn sites(balls: &[Ball]) -> Result<Vec<Site>, Error> {
         0
     };
     exponent = exponent.min(2000);
-    let on_lattice = |v: f64| times_power(v, exponent).round();
+    let on_lattice = |v: f64| times_power(v, exponent).round() + 0.0;
     let site = |b: &Ball| {
         let c = b.centre;
         let at = [0, 1, 2].map(|k| on_lattice(c[k] - middle[k]));
         let radius = times_power(b.radius, exponent);
         [at[0], at[1], at[2], (radius * radius).round()]
     };
-    Ok(balls.par_iter().map(site).collect())
+    let lattice = Grid {
+        centre: middle,
+        exponent,
+    };
+    Ok((balls.par_iter().map(site).collect(), lattice))
 }

@@ -49,8 +49,9 @@ pub struct SimplifyReport {
     pub betti_after: Option<Betti>,
 }
 
-/// Simplifies a medial axis. Balls of both sides are taken out by the same
-/// rules; the report counts those of `side`, whose shape is to be kept.
+/// Simplifies a medial axis: that of `side`. Unstable balls go on that side
+/// only, redundant ones on both: the balls about a convex part touch few
+/// samples close together and are still what bounds it.
 ///
 /// # Errors
 /// [`Error::Option`] for options out of range, [`Error::Cancelled`].
@@ -116,7 +117,8 @@ fn run(
         context,
     };
     let unstable: Vec<u32> = (0..keep.len() as u32)
-        .filter(|&b| keep[b as usize] && goes(balls, options, b))
+        .filter(|&b| keep[b as usize] && balls.sides[b as usize] == side)
+        .filter(|&b| goes(balls, options, b))
         .collect();
     guard.take_out(&unstable, &mut keep)?;
     if let Some(factor) = options.scale {

@@ -10,6 +10,7 @@ use powercrust::surface::{Keep, MinVolume};
 use powercrust::{NoiseOption, Options};
 
 use super::formats::dotted;
+use super::from_mat_args::{self, FromMat};
 use super::simplify_args::{self, SimplifyMat};
 use super::wanted::{self, Distance, Distances, Wanted};
 
@@ -22,6 +23,7 @@ Examples:
   powercrust points.xyz --mat axis.ma           the medial axis alone
   powercrust simplify-mat axis.ma --eps 1% -o simple.ma
                                                 its stable part
+  powercrust from-mat simple.ma -o crust.ply    and back to the surface
   cat points.xyz | powercrust - -o - --output-format obj > crust.obj
   powercrust check crust.ply                    is a mesh fit for use?";
 
@@ -102,6 +104,10 @@ pub enum Command {
     /// Say whether a mesh is closed, manifold, oriented and free of crossings.
     #[command(after_help = CHECK_EXAMPLES, after_long_help = format!("{CHECK_EXAMPLES}\n\n{EXIT_CODES}"))]
     Check(Check),
+    /// The surface that a medial axis stands for, or that of the union of its
+    /// balls.
+    #[command(after_help = from_mat_args::EXAMPLES, after_long_help = format!("{}\n\n{EXIT_CODES}", from_mat_args::EXAMPLES))]
+    FromMat(FromMat),
     /// Surfaces at a distance outside or inside, and shells.
     #[command(after_help = OFFSET_EXAMPLES, after_long_help = format!("{OFFSET_EXAMPLES}\n\n{EXIT_CODES}"))]
     Offset(Box<Offset>),

@@ -4,9 +4,12 @@
 //! way Ctrl-C takes.
 
 mod args;
+mod balls;
 mod check;
 mod fail;
 mod formats;
+mod from_mat;
+mod from_mat_args;
 mod generate;
 mod offset;
 mod output;
@@ -42,12 +45,14 @@ fn dispatch(cli: Cli) -> ExitCode {
     let json = match &cli.command {
         Some(Command::Check(check)) => check.json,
         Some(Command::SimplifyMat(args)) => args.reporting.json,
+        Some(Command::FromMat(args)) => args.reporting.json,
         Some(Command::Offset(offset)) => offset.reporting.json,
         _ => cli.reconstruct.reporting.json,
     };
     let done = match (cli.command, cli.generate) {
         (Some(Command::Check(args)), _) => check::check(&args),
         (Some(Command::SimplifyMat(args)), _) => simplify_mat::simplify_mat(&args),
+        (Some(Command::FromMat(args)), _) => from_mat::from_mat(&args),
         (Some(Command::Offset(args)), _) => offset::offset(&args),
         (None, Some(what)) => generate::generate(what),
         (None, None) => plan::Plan::new(cli.reconstruct).and_then(|plan| run::run(&plan)),

@@ -15,8 +15,9 @@ use powercrust::memory::{estimate, of_machine};
 use powercrust::{Context, Error, Options, PowerShape, Side};
 use serde_json::json;
 
+use super::balls::{judged, named, Input};
 use super::fail::{name, Failure};
-use super::formats::{axis_format, dotted, extension};
+use super::formats::{axis_format, dotted};
 use super::output::Target;
 use super::plan::{check_input, identity, out, out_of_range, Out};
 use super::report::in_numbers;
@@ -25,12 +26,6 @@ use super::show::{counted, Bar, Talk};
 use super::simplify_args::{SimplifyMat, WhichSide, DELTA_OF_EPS, EPS_PERCENT};
 use super::stop;
 use super::wanted::Length;
-
-/// What the input turned out to be.
-enum Input {
-    Axis(AxisFormat),
-    Points(CloudFormat),
-}
 
 pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
     let start = Instant::now();
@@ -41,8 +36,7 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
     let options = pipeline_options(args)?;
 
     let bytes = read_bytes(&args.input)?;
-    let input = said.or_else(|| by_name(&args.input, &bytes));
-    let input = input.unwrap_or_else(|| by_bytes(&bytes));
+    let input = said.unwrap_or_else(|| judged(&args.input, &bytes));
     let bar = Bar::new(talk);
     let context = Context {
         threads: args.reporting.threads,
@@ -210,39 +204,6 @@ fn place(args: &SimplifyMat) -> Result<Option<Out<AxisFormat>>, Failure> {
         .hint("give the simplified axis a name of its own"));
     }
     Ok(target)
-}
-
-/// A format by its name: of an axis where there is one, else of points.
-fn named(said: &str) -> Result<Input, Failure> {
-    // OBJ has no radii: as an input it is points. PLY and JSON may be both.
-    let axis =
-        AxisFormat::from_extension(said).filter(|&f| f != AxisFormat::Obj && f != AxisFormat::Ply);
-    match (axis, CloudFormat::from_extension(said)) {
-        (Some(format), _) => Ok(Input::Axis(format)),
-        (None, Some(format)) => Ok(Input::Points(format)),
-        _ => Err(
-            Failure::usage(format!("--input-format {said}: unknown format")).hint(format!(
-                "known: .ma .json {}",
-                dotted(CloudFormat::extensions())
-            )),
-        ),
-    }
-}
-
-fn by_name(path: &Path, bytes: &[u8]) -> Option<Input> {
-    let extension = extension(path)?;
-    match AxisFormat::from_extension(extension) {
-        Some(format @ (AxisFormat::Ma | AxisFormat::Json)) => Some(Input::Axis(format)),
-        Some(AxisFormat::Ply) => Some(by_bytes(bytes)),
-        _ => CloudFormat::from_extension(extension).map(Input::Points),
-    }
-}
-
-fn by_bytes(bytes: &[u8]) -> Input {
-    match AxisFormat::sniff(bytes) {
-        Some(format) => Input::Axis(format),
-        None => Input::Points(CloudFormat::sniff(bytes)),
-    }
 }
 
 /// The balls of the input, and the side whose axis is wanted.

@@ -18,35 +18,30 @@
 //! at edges, where few outer balls stand for a whole fan of directions, the
 //! faces are chamfers. So the power diagram says what the offset is (its
 //! parts, holes and cavities) and where, and the exact distance to the
-//! crust says how far: every vertex is moved to it (`fit`), and faces
-//! that are off it between their vertices are cut (`refine`), at creases
-//! where the two sides meet.
+//! crust says how far: every vertex is moved to it, and faces
+//! that are off it between their vertices are cut, at creases
+//! where the two sides meet (`crate::fit`).
 //! Planes of the crust are made exact first, where enough samples tell of
 //! them (`level`); their offsets are then planes at any distance.
 //!
-//! Where the fitted surface crosses itself and mending cannot help, it is made
-//! again with the faces of the balls there as the paper has them; at last all
-//! are. Where that crosses itself, inner balls at the crossing turn outer
-//! until it does not.
+//! Where the fitted surface crosses itself and mending cannot help, faces stay
+//! as the paper has them (see `crate::fit`).
 
-mod fit;
+mod distance;
 mod level;
-mod refine;
 mod shell;
 
-use crate::context::{Context, Stage};
+use crate::context::Context;
 use crate::delaunay::times_power;
 use crate::error::Error;
+use crate::fit::{solid, Cells, Field};
 use crate::geom::{Bounds, Point, Side};
 use crate::mesh::{PolygonMesh, Surface};
 use crate::pipeline::Reconstruction;
-use crate::power::{power_diagram, PowerDiagram};
+use crate::power::power_diagram;
 use crate::predicates::Site;
-use crate::surface::{
-    clean_counted, drop_inverted, mend_crust, raw_crust, triangulate, triangulate_faces,
-    CleanOptions, Crust, MendOptions, Mending, Placement, NONE,
-};
-use fit::Target;
+use crate::surface::{drop_inverted, triangulate, Crust, NONE};
+use distance::Distance;
 
 /// The least tolerance that is taken where none is given, as a share of the
 /// diagonal.
@@ -54,11 +49,6 @@ pub const TOLERANCE: f64 = 1e-4;
 /// Where the crust itself is coarser, its sagitta is taken: that of this share
 /// of its edges is less. Finer faces would show its triangles, not the solid.
 const SAGITTAS: f64 = 0.75;
-
-/// Times a surface is made.
-const TRIES: usize = 24;
-/// Times of these that it is fitted.
-const FITTED: usize = 4;
 
 /// How offsets are made.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -244,36 +234,28 @@ impl<'a> Offsets<'a> {
         }
         let step = self.of.ball_lattice.step();
         let power = power_diagram(&moved.sites, step, context)?;
-        let mut sides = moved.sides.clone();
-        let mut held = vec![false; sides.len()];
-        for attempt in 0..TRIES {
-            let fitted = self.options.fit && attempt < FITTED;
-            let held_or_none = fitted.then_some(&held[..]);
-            let mended = self.surface(&power, &sides, distance, held_or_none, context)?;
-            let Some(mended) = mended else {
-                return Err(gone());
-            };
-            let balls = mended.left.iter().flatten().flatten().copied();
-            let mut turned = 0;
-            if fitted {
-                for b in balls {
-                    if let Some(hold) = held.get_mut(b as usize) {
-                        *hold = true;
-                    }
-                }
-            } else {
-                turned = turn(&mended, &power, &mut sides);
-            }
-            done.turned += turned;
-            let hopeless = !fitted && turned == 0 || attempt + 1 == TRIES;
-            if mended.left.is_empty() || hopeless {
-                done.fitted = fitted;
-                done.unfitted = held.iter().filter(|&&h| h && fitted).count();
-                done.crossings_left = mended.left.len();
-                done.crust = mended.crust;
-                break;
-            }
-        }
+        let (lattice, unit) = (&self.of.lattice, self.unit);
+        let cells = Cells {
+            power: &power,
+            to_unit: &|p| self.rounded(lattice.to_user(p.map(|x| x * step)), unit),
+            tolerance: times_power(self.tolerance, unit),
+            shortest: 0.0,
+            single: self.options.single,
+        };
+        let field = Distance {
+            base: &self.base,
+            distance: times_power(distance, unit),
+            tolerance: cells.tolerance,
+        };
+        let field = self.options.fit.then_some(&field as &dyn Field);
+        let Some(made) = solid(&cells, moved.sides.clone(), field, context)? else {
+            return Err(gone());
+        };
+        done.fitted = made.fitted;
+        done.unfitted = made.unfitted;
+        done.turned = made.turned;
+        done.crossings_left = made.crossings_left;
+        done.crust = made.crust;
         drop_inverted(&mut done.crust);
         if done.crust.mesh.face_count() == 0 {
             return Err(gone());
@@ -286,60 +268,6 @@ impl<'a> Offsets<'a> {
             *balls = balls.map(|b| moved.ids.get(b as usize).copied().unwrap_or(NONE));
         }
         Ok(done)
-    }
-
-    /// The mended surface between unlike cells, at a size near 1; `None` if
-    /// there is none. It is fitted if it is told at which balls it is not.
-    fn surface(
-        &self,
-        power: &PowerDiagram,
-        sides: &[Side],
-        distance: f64,
-        held: Option<&[bool]>,
-        context: &Context,
-    ) -> Result<Option<Mending>, Error> {
-        let (lattice, step, unit) = (&self.of.lattice, self.of.ball_lattice.step(), self.unit);
-        context.advance(Stage::Crust, 0, 3)?;
-        let place = Placement {
-            touching: &|_| &[],
-            sample: &|_| [0.0; 3],
-            to_user: &|p| self.rounded(lattice.to_user(p.map(|x| x * step)), unit),
-        };
-        let raw = raw_crust(power, sides, &place);
-        if raw.next.is_empty() {
-            return Ok(None);
-        }
-        let (polygons, _) = clean_counted(raw, &CleanOptions::default());
-        let mut crust = triangulate_faces(polygons).crust;
-        if crust.mesh.face_count() == 0 {
-            return Ok(None);
-        }
-        context.advance(Stage::Crust, 1, 3)?;
-        let tolerance = times_power(self.tolerance, unit);
-        if let Some(held) = held {
-            let target = Target {
-                base: &self.base,
-                distance: times_power(distance, unit),
-                tolerance,
-            };
-            let held = |balls: [u32; 2]| balls.iter().any(|&b| held.get(b as usize) == Some(&true));
-            fit::fit(&mut crust, &target, &held);
-            refine::refine(&mut crust, &target, &held, context)?;
-        }
-        self.mend(crust, tolerance, context).map(Some)
-    }
-
-    /// Mends a surface at a size near 1 without samples.
-    fn mend(&self, crust: Crust, tolerance: f64, context: &Context) -> Result<Mending, Error> {
-        let how = MendOptions {
-            flatness: 0.0,
-            tolerance: Some(0.5 * tolerance),
-            single: self.options.single,
-            keep_samples: false,
-            spacing: &|_| 0.0,
-            ball: &|_| None,
-        };
-        Ok(mend_crust(crust, &how, context)?)
     }
 
     /// A point in the units of the input at a size near 1, as it is written.
@@ -413,20 +341,4 @@ impl Moved {
         }
         moved
     }
-}
-
-/// Lets the smallest inner ball at each crossing turn outer; how many did.
-fn turn(mended: &Mending, power: &PowerDiagram, sides: &mut [Side]) -> usize {
-    let mut count = 0;
-    for faces in &mended.left {
-        let balls = faces.iter().flatten().copied();
-        let inner = balls.filter(|&b| sides.get(b as usize) == Some(&Side::Inner));
-        let weight = |b: &u32| power.sites[*b as usize][3];
-        let smallest = inner.min_by(|a, b| weight(a).total_cmp(&weight(b)).then(a.cmp(b)));
-        if let Some(b) = smallest {
-            sides[b as usize] = Side::Outer;
-            count += 1;
-        }
-    }
-    count
 }

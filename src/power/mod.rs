@@ -7,8 +7,10 @@
 //! unlike cells close up as long as the sentinels count as outer.
 
 mod check;
+mod tree;
 
 pub use check::{check, Finding};
+pub(crate) use tree::BallTree;
 
 use crate::context::{Context, Stage};
 use crate::delaunay::{circumcentre, corners, Centre};

@@ -4,6 +4,7 @@
 mod axes;
 mod check;
 mod done;
+mod from_mat;
 mod help;
 mod interrupted;
 mod offset;

@@ -1,15 +1,15 @@
-//! Faces that lie off the exact offset between their vertices are cut.
+//! Faces that lie off the surface between their vertices are cut.
 //!
-//! The middle of an edge tells. Where the offset is smooth there, the middle
-//! moves to the exact distance. Where the ends of the edge look different
-//! ways and the planes there meet near the edge at the right distance, the
-//! offset has a crease there, and the new vertex is put on it: both sides
+//! The middle of an edge tells. Where the surface is smooth there, the middle
+//! moves onto it. Where the ends of the edge look different
+//! ways and the planes there meet near the edge on the surface, it
+//! has a crease there, and the new vertex is put on it: both sides
 //! then end at the crease, and the edge between two new vertices of one face runs along
 //! it.
 
 use rayon::prelude::*;
 
-use super::fit::{looks, Target};
+use super::field::{looks, meeting, project, Field};
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::plain::{dot, norm};
 use crate::geom::vec3::{add, scale, sub};
@@ -26,7 +26,7 @@ const CREASE: f64 = 0.9;
 /// faces whose balls are held.
 pub(super) fn refine(
     crust: &mut Crust,
-    target: &Target,
+    field: &dyn Field,
     held: &dyn Fn([u32; 2]) -> bool,
     cx: &Context,
 ) -> Result<(), Cancelled> {
@@ -37,7 +37,7 @@ pub(super) fn refine(
     let outward = looks(&as_mesh(&points, &triangles)).0;
     let mut normals: Vec<Point> = (points.par_iter().zip(outward))
         .map_init(Vec::new, |scratch, (&p, outward)| {
-            let foot = target.foot(p, outward, scratch);
+            let foot = field.foot(p, outward, scratch);
             foot.map_or(outward, |f| f.normal)
         })
         .collect();
@@ -50,7 +50,7 @@ pub(super) fn refine(
             .map_init(Vec::new, |scratch, edge| {
                 let [a, b] = edge.map(|v| v as usize);
                 let ends = [points[a], points[b]];
-                cut(ends, [normals[a], normals[b]], target, scratch)
+                cut(ends, [normals[a], normals[b]], field, scratch)
             })
             .collect();
         let mut number = vec![NONE; cuts.len()];
@@ -145,40 +145,33 @@ impl Sides {
 fn cut(
     ends: [Point; 2],
     normals: [Point; 2],
-    target: &Target,
+    field: &dyn Field,
     scratch: &mut Vec<(f64, u32)>,
 ) -> Option<(Point, Point)> {
     let middle = scale(add(ends[0], ends[1]), 0.5);
     let length = norm(sub(ends[0], ends[1]));
     let outward = add(normals[0], normals[1]);
-    let foot = target.foot(middle, outward, scratch)?;
-    if foot.off.abs() <= target.tolerance || length <= target.tolerance {
+    let foot = field.foot(middle, outward, scratch)?;
+    if foot.off.abs() <= field.tolerance() || length <= field.tolerance() {
         return None;
     }
     if let Some(p) = crease(ends, normals, middle) {
-        let foot = target.foot(p, outward, scratch)?;
-        if norm(sub(p, middle)) < 0.5 * length && foot.off.abs() <= 0.1 * target.tolerance {
+        let foot = field.foot(p, outward, scratch)?;
+        if norm(sub(p, middle)) < 0.5 * length && foot.off.abs() <= 0.1 * field.tolerance() {
             return Some((p, foot.normal));
         }
     }
-    let (p, normal) = target.project(middle, outward, scratch)?;
+    let (p, normal) = project(field, middle, outward, scratch)?;
     (norm(sub(p, middle)) < 0.5 * length).then_some((p, normal))
 }
 
 /// The point of the line in which the planes at the ends meet that is
 /// nearest to the middle, if they look different ways.
-fn crease(ends: [Point; 2], [m, n]: [Point; 2], middle: Point) -> Option<Point> {
-    let cosine = dot(m, n);
-    let sine = 1.0 - cosine * cosine;
-    if cosine > CREASE || sine < 1e-3 {
-        return None;
+fn crease([a, b]: [Point; 2], [m, n]: [Point; 2], middle: Point) -> Option<Point> {
+    match dot(m, n) > CREASE {
+        true => None,
+        false => meeting([(a, m), (b, n)], middle),
     }
-    let offs = [dot(m, sub(ends[0], middle)), dot(n, sub(ends[1], middle))];
-    let along = [
-        (offs[0] - cosine * offs[1]) / sine,
-        (offs[1] - cosine * offs[0]) / sine,
-    ];
-    Some(add(middle, add(scale(m, along[0]), scale(n, along[1]))))
 }
 
 /// The triangles that one falls into whose edges have new vertices, where
