@@ -30,6 +30,8 @@ pub enum Stage {
     Reduce,
     /// Simplifying a medial axis.
     Simplify,
+    /// Asking a medial axis.
+    Query,
 }
 
 impl Stage {
@@ -46,6 +48,7 @@ impl Stage {
             Stage::Check => "check",
             Stage::Reduce => "reduce",
             Stage::Simplify => "simplify",
+            Stage::Query => "query",
         }
     }
 }

@@ -46,6 +46,7 @@
 //! **Medial axes** (section 7.3)
 //! - [`axis::LabelledBalls`]: balls with labels and power diagram, of a result or of a file
 //! - [`axis::simplify`]: without unstable and redundant balls
+//! - [`Reconstruction::medial_axis`], [`axis::MedialAxis`]: side, distance, nearest ball, thickness at points
 //! - [`axis::structure`], [`axis::skeleton`]: sheets, seams, junctions, rims; edges only
 //! - [`PowerShape::thin`], [`PowerShape::betti`]: without flat tetrahedra; parts, tunnels, voids
 //! - [`simplify::Contact`]: what the samples on a ball span

@@ -37,6 +37,16 @@ impl Grid {
     pub fn to_user(self, p: Point) -> Point {
         [0, 1, 2].map(|k| self.centre[k] + times_power(p[k], -self.exponent))
     }
+
+    /// The place among the sites, not rounded.
+    pub fn to_sites(self, p: Point) -> Point {
+        [0, 1, 2].map(|k| times_power(p[k] - self.centre[k], self.exponent))
+    }
+
+    /// A length in steps, in the user's unit.
+    pub fn length_to_user(self, length: f64) -> f64 {
+        times_power(length, -self.exponent)
+    }
 }
 
 /// Balls of a medial axis, inner and outer, with their power diagram.

@@ -12,6 +12,7 @@ mod dual;
 mod estimate;
 mod labelled;
 mod options;
+mod query;
 mod scale;
 mod simplify;
 mod skeleton;
@@ -19,6 +20,7 @@ mod structure;
 
 pub use labelled::LabelledBalls;
 pub use options::SimplifyOptions;
+pub use query::{Answer, MedialAxis, NO_BALL};
 pub use simplify::{simplify, Simplified, SimplifyReport};
 pub use skeleton::{skeleton, Skeleton};
 pub use structure::{structure, Curve, Junction, Sheet, Structure, NO_PART};

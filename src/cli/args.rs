@@ -11,6 +11,7 @@ use powercrust::{NoiseOption, Options};
 
 use super::formats::dotted;
 use super::from_mat_args::{self, FromMat};
+use super::query_args::{self, Query};
 use super::simplify_args::{self, SimplifyMat};
 use super::wanted::{self, Distance, Distances, Wanted};
 
@@ -111,6 +112,9 @@ pub enum Command {
     /// Surfaces at a distance outside or inside, and shells.
     #[command(after_help = OFFSET_EXAMPLES, after_long_help = format!("{OFFSET_EXAMPLES}\n\n{EXIT_CODES}"))]
     Offset(Box<Offset>),
+    /// What a medial axis says of points: inside or outside, how far, how thick.
+    #[command(after_help = query_args::EXAMPLES, after_long_help = format!("{}\n\n{EXIT_CODES}", query_args::EXAMPLES))]
+    Query(Query),
     /// Simplify a medial axis.
     #[command(after_help = simplify_args::EXAMPLES, after_long_help = format!("{}\n\n{EXIT_CODES}", simplify_args::EXAMPLES))]
     SimplifyMat(SimplifyMat),

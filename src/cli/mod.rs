@@ -15,6 +15,8 @@ mod offset;
 mod output;
 mod plan;
 mod product;
+mod query;
+mod query_args;
 mod report;
 mod run;
 mod show;
@@ -46,6 +48,7 @@ fn dispatch(cli: Cli) -> ExitCode {
         Some(Command::Check(check)) => check.json,
         Some(Command::SimplifyMat(args)) => args.reporting.json,
         Some(Command::FromMat(args)) => args.reporting.json,
+        Some(Command::Query(args)) => args.reporting.json,
         Some(Command::Offset(offset)) => offset.reporting.json,
         _ => cli.reconstruct.reporting.json,
     };
@@ -53,6 +56,7 @@ fn dispatch(cli: Cli) -> ExitCode {
         (Some(Command::Check(args)), _) => check::check(&args),
         (Some(Command::SimplifyMat(args)), _) => simplify_mat::simplify_mat(&args),
         (Some(Command::FromMat(args)), _) => from_mat::from_mat(&args),
+        (Some(Command::Query(args)), _) => query::query(&args),
         (Some(Command::Offset(args)), _) => offset::offset(&args),
         (None, Some(what)) => generate::generate(what),
         (None, None) => plan::Plan::new(cli.reconstruct).and_then(|plan| run::run(&plan)),

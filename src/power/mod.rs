@@ -10,7 +10,7 @@ mod check;
 mod tree;
 
 pub use check::{check, Finding};
-pub(crate) use tree::BallTree;
+pub(crate) use tree::{BallTree, Extent};
 
 use crate::context::{Context, Stage};
 use crate::delaunay::{circumcentre, corners, Centre};

@@ -8,6 +8,7 @@ mod from_mat;
 mod help;
 mod interrupted;
 mod offset;
+mod query;
 mod refused;
 
 use std::fs;
