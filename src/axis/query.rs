@@ -308,12 +308,7 @@ impl Half {
     fn least_power(&self, at: Point, stack: &mut Vec<(f64, u32)>) -> (i128, u32) {
         let whole = at.map(|x| (x * STEP) as i128);
         let mut best = (i128::MAX, 0);
-        // Rounded downwards by more than the floats can be off.
-        let bound = |e: &Extent| {
-            let (far, radius_sq) = (e.dist_sq(at), e.radius * e.radius);
-            let slack = 1e-14 * (far + radius_sq);
-            (far - radius_sq - slack) * (STEP * STEP)
-        };
+        let bound = |e: &Extent| e.least_power(at) * (STEP * STEP);
         self.tree.search(stack, bound, |b| {
             let site = &self.sites[b as usize];
             let mut power = -((site[3] as i128) << 20);

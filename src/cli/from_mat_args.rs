@@ -36,14 +36,14 @@ pub struct FromMat {
     #[arg(short, long, value_name = "MESH", help_heading = FILES)]
     pub output: Option<PathBuf>,
 
-    /// Make the surface of the union of the inner balls, within the tolerance,
-    /// with creases where balls meet.
+    /// Make the surface of the union of the inner balls, fitted to them up to
+    /// the tolerance, with creases where balls meet.
     #[arg(long)]
     pub union: bool,
 
     /// How far faces may move to lose a vertex and, with --union, how far they
-    /// may be off the union: a length, or a share of the diagonal of the
-    /// inner balls, above 0. By default 0.02%.
+    /// should be off the union: a length, or a share of the diagonal of the
+    /// inner balls, above 0. By default 0.02%. What they are is said.
     #[arg(long, value_name = "X", value_parser = distance, allow_hyphen_values = true)]
     pub tolerance: Option<Distance>,
 

@@ -51,7 +51,7 @@ const TRIES: usize = 3;
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct InverseOptions {
     /// How far faces may move to lose a vertex and, with `union`, how far they
-    /// may be off the union of the balls: a positive length in the units of the
+    /// should be off the union of the balls, as [`Inverse::from_union`] tells: a positive length in the units of the
     /// input. `None` takes [`TOLERANCE`] of the diagonal.
     pub tolerance: Option<f64>,
     /// Make the surface of the union of the inner balls, whatever others there

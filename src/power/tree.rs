@@ -1,10 +1,17 @@
 //! A tree over balls: which of them is nearest, by whatever measure.
 //!
-//! Every node splits its balls at the median along the longest side of their
-//! box in four dimensions, the radius being the fourth: so the few huge outer
-//! balls part from the many small ones early, and what a node says of its balls
-//! is tight. The tree depends on the balls alone.
+//! Outer balls may be huge, nearly half-spaces: what a box of their centres says
+//! of them is worthless, for a centre moves by much where the sphere nearby hardly
+//! does. So a node also knows the directions in which the centres lie from the
+//! origin and how far the spheres stay off it: with `D = |c|`, `u = c / D` and
+//! `s = D - r` a point `p` is farther than `s - u p` from the sphere, for `|p - c|`
+//! is at least `D - u p`. Nodes split their balls at the median along the
+//! longest side of their box in four dimensions: centres and radii, drawn in from infinity.
+//! The tree depends on the balls alone. On the 13,000 balls of an ellipsoid
+//! (6,000 samples) a question takes about 30 us instead of 180 with boxes of centres and radii alone.
 
+use crate::geom::vec3::plain::{norm, norm_sq};
+use crate::geom::vec3::scale;
 use crate::geom::{Ball, Point};
 
 /// Balls in a leaf, at most.
@@ -16,8 +23,12 @@ pub(crate) struct Extent {
     min: Point,
     max: Point,
     /// The largest radius.
-    pub radius: f64,
-    least: f64,
+    radius: f64,
+    /// The directions of the centres, seen from the origin.
+    direction: [Point; 2],
+    /// How far the centres are, and the spheres, from the origin.
+    far: [f64; 2],
+    stays_off: [f64; 2],
 }
 
 impl Extent {
@@ -26,7 +37,9 @@ impl Extent {
             min: [f64::INFINITY; 3],
             max: [f64::NEG_INFINITY; 3],
             radius: f64::NEG_INFINITY,
-            least: f64::INFINITY,
+            direction: [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
+            far: [f64::INFINITY, f64::NEG_INFINITY],
+            stays_off: [f64::INFINITY, f64::NEG_INFINITY],
         };
         for ball in some.iter().map(|&b| &balls[b as usize]) {
             for k in 0..3 {
@@ -34,28 +47,54 @@ impl Extent {
                 all.max[k] = all.max[k].max(ball.centre[k]);
             }
             all.radius = all.radius.max(ball.radius);
-            all.least = all.least.min(ball.radius);
+            let far = norm(ball.centre);
+            for k in 0..3 {
+                let u = if far > 0.0 { ball.centre[k] / far } else { 0.0 };
+                all.direction[0][k] = all.direction[0][k].min(u);
+                all.direction[1][k] = all.direction[1][k].max(u);
+            }
+            all.far = [all.far[0].min(far), all.far[1].max(far)];
+            let off = far - ball.radius;
+            all.stays_off = [all.stays_off[0].min(off), all.stays_off[1].max(off)];
         }
         all
     }
 
+    /// No sphere is nearer than this to a point, counting negative inside.
+    pub fn least_distance(&self, p: Point) -> f64 {
+        let by_box = self.dist_sq(p).sqrt() * (1.0 - 1e-15) - self.radius;
+        let slack = 1e-14 * (self.far[1] + norm(p));
+        by_box.max(self.stays_off[0] - self.most_along(p) - slack)
+    }
+
+    /// No power of a point is less than this.
+    pub fn least_power(&self, p: Point) -> f64 {
+        let (dist_sq, radius_sq) = (self.dist_sq(p), self.radius * self.radius);
+        let by_box = dist_sq - radius_sq - 1e-14 * (dist_sq + radius_sq);
+        // |p - c|² - r² = 2 D (s - u p) - s² + p².
+        let p_sq = norm_sq(p);
+        let least = self.stays_off[0] - self.most_along(p);
+        let far = self.far[usize::from(least < 0.0)];
+        let off_sq = self.stays_off.map(|s| s * s);
+        let size = self.far[1] * (self.far[1] + p_sq.sqrt()) + p_sq + off_sq[0].max(off_sq[1]);
+        let by_plane = 2.0 * far * least - off_sq[0].max(off_sq[1]) + p_sq;
+        by_box.max(by_plane - 1e-14 * size)
+    }
+
+    /// The most a point lies along the directions of the centres.
+    fn most_along(&self, p: Point) -> f64 {
+        let [low, high] = self.direction;
+        (0..3).map(|k| (low[k] * p[k]).max(high[k] * p[k])).sum()
+    }
+
     /// The squared distance from a point to the box of the centres.
-    pub fn dist_sq(&self, p: Point) -> f64 {
+    fn dist_sq(&self, p: Point) -> f64 {
         let mut sum = 0.0;
         for (k, &x) in p.iter().enumerate() {
             let d = (self.min[k] - x).max(x - self.max[k]).max(0.0);
             sum += d * d;
         }
         sum
-    }
-
-    /// The dimension in which the balls spread most.
-    fn longest(&self) -> usize {
-        let side = |k: usize| match k {
-            3 => self.radius - self.least,
-            k => self.max[k] - self.min[k],
-        };
-        (1..4).fold(0, |best, k| if side(k) > side(best) { k } else { best })
     }
 }
 
@@ -82,19 +121,29 @@ impl BallTree {
             nodes: Vec::new(),
             order: (0..balls.len() as u32).collect(),
         };
-        if !balls.is_empty() {
-            let mut order = std::mem::take(&mut tree.order);
-            tree.build(balls, &mut order, 0);
-            tree.order = order;
+        if balls.is_empty() {
+            return tree;
         }
+        let mut sizes: Vec<f64> = balls.iter().map(|b| norm(b.centre)).collect();
+        let middle = sizes.len() / 2;
+        let size = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let size = size.max(f64::MIN_POSITIVE);
+        let keys: Vec<[f64; 4]> = (balls.iter())
+            .map(|b| {
+                let c = scale(b.centre, 1.0 / (norm(b.centre) + size));
+                [c[0], c[1], c[2], b.radius / (b.radius + size)]
+            })
+            .collect();
+        let mut order = std::mem::take(&mut tree.order);
+        tree.build(balls, &keys, &mut order, 0);
+        tree.order = order;
         tree
     }
 
-    fn build(&mut self, balls: &[Ball], order: &mut [u32], first: usize) {
-        let extent = Extent::of(balls, order);
+    fn build(&mut self, balls: &[Ball], keys: &[[f64; 4]], order: &mut [u32], first: usize) {
         let at = self.nodes.len();
         self.nodes.push(Node {
-            extent,
+            extent: Extent::of(balls, order),
             right: 0,
             first: first as u32,
             count: order.len() as u32,
@@ -102,17 +151,20 @@ impl BallTree {
         if order.len() <= LEAF {
             return;
         }
-        let axis = extent.longest();
-        let key = |b: &u32| match axis {
-            3 => balls[*b as usize].radius,
-            k => balls[*b as usize].centre[k],
+        let side = |k: usize| {
+            let all = order.iter().map(|&b| keys[b as usize][k]);
+            let least = all.clone().fold(f64::INFINITY, f64::min);
+            all.fold(f64::NEG_INFINITY, f64::max) - least
         };
+        let sides = [0, 1, 2, 3].map(side);
+        let axis = (1..4).fold(0, |best, k| if sides[k] > sides[best] { k } else { best });
+        let key = |b: &u32| keys[*b as usize][axis];
         let middle = order.len() / 2;
         order.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
         let (left, right) = order.split_at_mut(middle);
-        self.build(balls, left, first);
+        self.build(balls, keys, left, first);
         self.nodes[at].right = self.nodes.len() as u32;
-        self.build(balls, right, first + middle);
+        self.build(balls, keys, right, first + middle);
     }
 
     /// Goes through the balls that may matter, the most promising ones first.
@@ -162,15 +214,18 @@ impl BallTree {
         stack: &mut Vec<(f64, u32)>,
     ) -> Option<(f64, u32)> {
         let mut best: Option<(f64, u32)> = None;
-        let bound = |e: &Extent| e.dist_sq(p).sqrt() * (1.0 - 1e-15) - e.radius;
-        self.search(stack, bound, |b| {
-            let ball = &balls[b as usize];
-            let off = crate::geom::vec3::dist_sq(p, ball.centre).sqrt() - ball.radius;
-            if best.is_none_or(|(least, c)| (off, b) < (least, c)) {
-                best = Some((off, b));
-            }
-            best.map_or(f64::INFINITY, |(least, _)| least)
-        });
+        self.search(
+            stack,
+            |e| e.least_distance(p),
+            |b| {
+                let ball = &balls[b as usize];
+                let off = crate::geom::vec3::dist_sq(p, ball.centre).sqrt() - ball.radius;
+                if best.is_none_or(|(least, c)| (off, b) < (least, c)) {
+                    best = Some((off, b));
+                }
+                best.map_or(f64::INFINITY, |(least, _)| least)
+            },
+        );
         best
     }
 }
