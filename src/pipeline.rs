@@ -9,7 +9,7 @@ use crate::delaunay::{delaunay, samples, Lattice};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{
-    drop_askew, energy, hold, label, opposites, refine, Evidence, LabelOptions, Neighbours,
+    drop_askew, energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours,
     MOST_UNHELD,
 };
 use crate::memory;
@@ -20,7 +20,7 @@ use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
 use crate::surface::stage::Job;
-use crate::surface::{drop_inverted, power_shape, Crust, PowerShape};
+use crate::surface::{drop_strays, power_shape, Crust, PowerShape};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -212,8 +212,12 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     let mut labels = label(&evidence, &neighbours, &how, context)?;
     stats.greedy_energy = energy(&evidence, &neighbours, &labels.sides, &how);
     stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
+    if stats.noise.treated {
+        let (of_sample, sites) = (&poles.of_sample, &delaunay.sites);
+        stats.wound = wind(&evidence, of_sample, sites, &spacing, &mut labels, context)?;
+    }
     stats.unreached_balls = labels.unreached;
-    stats.label_energy = match stats.flips {
+    stats.label_energy = match stats.flips + stats.wound.changed {
         0 => stats.greedy_energy,
         _ => energy(&evidence, &neighbours, &labels.sides, &how),
     };
@@ -239,8 +243,9 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         options,
     };
     let mut crust = job.run(&mut sides, &mut stats, context)?;
-    stats.inverted_shells = drop_inverted(&mut crust);
-    if stats.inverted_shells > 0 {
+    let strays = drop_strays(&mut crust);
+    (stats.inverted_shells, stats.specks) = (strays.inverted, strays.specks);
+    if strays.inverted + strays.specks > 0 {
         stats.vertices = crust.mesh.vertices.len();
         stats.faces = crust.mesh.face_count();
         stats.volume = crust.mesh.volume();

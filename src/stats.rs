@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::label::{Energy, Held};
+use crate::label::{Energy, Held, Wound};
 use crate::mesh::Shape;
 use crate::noise::NoiseReport;
 use crate::options::Options;
@@ -63,6 +63,8 @@ pub struct Stats {
     pub relabelled: usize,
     /// Shells of the size of rounding errors that were inside out: taken out.
     pub inverted_shells: usize,
+    /// Shells taken out because they passed through fewer than four samples.
+    pub specks: usize,
     /// The shape of the triangles before mending and coarsening.
     pub shape_before: Shape,
     /// Their shape afterwards; the polygons' triangles where there are polygons.
@@ -77,6 +79,9 @@ pub struct Stats {
     pub greedy_energy: Energy,
     /// Labels changed afterwards to lower it.
     pub flips: u32,
+    /// What winding numbers said of the labels; asked only where there was
+    /// noise.
+    pub wound: Wound,
     /// The evidence the final labels go against.
     pub label_energy: Energy,
     /// Decisions of the Delaunay triangulation by stage.
@@ -124,6 +129,7 @@ impl Stats {
             samples_lost: 0,
             relabelled: 0,
             inverted_shells: 0,
+            specks: 0,
             shape_before: Shape::default(),
             shape_after: Shape::default(),
             faces: 0,
@@ -131,6 +137,7 @@ impl Stats {
             volume: 0.0,
             greedy_energy: Energy::default(),
             flips: 0,
+            wound: Wound::default(),
             label_energy: Energy::default(),
             delaunay_predicates: Counts::default(),
             power_predicates: Counts::default(),

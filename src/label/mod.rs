@@ -15,12 +15,15 @@ mod hold;
 mod propagate;
 mod queue;
 mod refine;
+mod wind;
+mod winding;
 
 pub use check::{check, Finding};
 pub use energy::{energy, Energy};
 pub use hold::{hold, Held, MOST_UNHELD};
 pub use propagate::label;
 pub use refine::refine;
+pub use wind::{wind, Wound};
 
 use rayon::prelude::*;
 

@@ -8,7 +8,7 @@
 
 use crate::mesh::{Anatomy, PolygonMesh};
 
-use super::raw::Crust;
+use super::raw::{Crust, NONE};
 
 /// Which parts to keep, by size.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -211,15 +211,67 @@ pub fn filter_shells(crust: &Crust, filter: &ShellFilter) -> (Crust, Selection) 
 /// Takes out shells that are inside out for where they lie, and says how many
 /// there were.
 pub(crate) fn drop_inverted(crust: &mut Crust) -> usize {
+    drop_shells(crust, false).inverted
+}
+
+/// Shells that were taken out because no solid has them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Strays {
+    /// Those that were inside out for where they lay.
+    pub inverted: usize,
+    /// Those that passed through fewer than [`FEWEST`] samples.
+    pub specks: usize,
+}
+
+/// The fewest samples that bound a solid, or a cavity.
+const FEWEST: u32 = 4;
+
+/// Takes out shells that bound nothing: those inside out, and, beside others,
+/// those through fewer than four samples. The latter are what is left of a ball or two
+/// that were cut off from the part they belong to, at edges or amid noise.
+pub(crate) fn drop_strays(crust: &mut Crust) -> Strays {
+    drop_shells(crust, true)
+}
+
+fn drop_shells(crust: &mut Crust, specks: bool) -> Strays {
     let anatomy = Anatomy::of(&crust.mesh);
-    let kept: Vec<bool> = (0..anatomy.len())
+    let mut kept: Vec<bool> = (0..anatomy.len())
         .map(|s| !anatomy.is_inverted(s))
         .collect();
-    let dropped = kept.iter().filter(|&&k| !k).count();
-    if dropped > 0 {
+    let inverted = kept.iter().filter(|&&k| !k).count();
+    let mut strays = Strays {
+        inverted,
+        specks: 0,
+    };
+    if specks && anatomy.len() > 1 {
+        let through = samples_by_shell(crust, &anatomy);
+        let sound = |s: usize| kept[s] && through[s] >= FEWEST && !anatomy.is_cavity(s);
+        if (0..anatomy.len()).any(sound) {
+            for (kept, _) in (kept.iter_mut().zip(&through)).filter(|(_, &n)| n < FEWEST) {
+                strays.specks += usize::from(std::mem::take(kept));
+            }
+        }
+    }
+    if strays != Strays::default() {
         *crust = anatomy.select(crust, &kept).0;
     }
-    dropped
+    strays
+}
+
+/// How many samples each shell passes through.
+fn samples_by_shell(crust: &Crust, anatomy: &Anatomy) -> Vec<u32> {
+    let mut through = vec![0; anatomy.len()];
+    let mut seen = vec![false; crust.mesh.vertices.len()];
+    for (f, &shell) in anatomy.shell_of_face.iter().enumerate() {
+        for &v in crust.mesh.face(f) {
+            let new = !std::mem::replace(&mut seen[v as usize], true);
+            let sample = crust.vertex_samples[v as usize] != NONE;
+            if let Some(count) = through.get_mut(shell as usize) {
+                *count += u32::from(new && sample);
+            }
+        }
+    }
+    through
 }
 
 impl Crust {
@@ -318,13 +370,28 @@ mod tests {
     #[test]
     fn shells_inside_out_are_taken_out() {
         let mut sound = boxes(&ONION);
-        assert_eq!(drop_inverted(&mut sound), 0);
+        assert_eq!(drop_strays(&mut sound), Strays::default());
         assert_eq!(sound.mesh.face_count(), 24);
         let mut crust = boxes(&[(4.0, false), (3.0, false), (0.5, true)]);
         // The box of 3 and the one in it both contradict the one around.
-        assert_eq!(drop_inverted(&mut crust), 2);
+        let strays = drop_strays(&mut crust);
+        assert_eq!((strays.inverted, strays.specks), (2, 0));
         assert_eq!(crust.mesh.vertices.len(), 8);
         assert_eq!(crust.mesh.volume(), 512.0);
+    }
+
+    #[test]
+    fn shells_through_fewer_than_four_samples_are_taken_out() {
+        let mut crust = boxes(&[(4.0, false), (3.0, true)]);
+        for v in &mut crust.vertex_samples[8..13] {
+            *v = NONE;
+        }
+        let strays = drop_strays(&mut crust);
+        assert_eq!((strays.inverted, strays.specks), (0, 1));
+        assert_eq!(crust.mesh.volume(), 512.0);
+        // Alone it stays.
+        crust.vertex_samples.fill(NONE);
+        assert_eq!(drop_strays(&mut crust), Strays::default());
     }
 
     #[test]

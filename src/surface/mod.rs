@@ -31,7 +31,7 @@ mod unfold;
 
 pub(crate) use clean::clean_counted;
 pub use clean::{clean, CleanOptions};
-pub(crate) use components::drop_inverted;
+pub(crate) use components::{drop_inverted, drop_strays};
 pub use components::{filter_shells, Keep, MinVolume, Selection, ShellFilter, Shells};
 pub use extract::{raw_crust, Placement};
 pub use mend::{mend_crust, MendOptions, Mending};
