@@ -9,8 +9,7 @@ use crate::delaunay::{delaunay, samples, Lattice};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{
-    drop_askew, energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours,
-    MOST_UNHELD,
+    energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours, MOST_UNHELD,
 };
 use crate::memory;
 use crate::noise::treat;
@@ -154,13 +153,10 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     clock.lap(Stage::Samples, &mut stats);
 
     // Samples amid noise move onto the surface.
-    let mut normals = Vec::new();
     match treat(&samples, options.noise, context)? {
         Ok(treated) => {
             stats.noise = treated.report;
-            let (moved, before) = samples.moved(&treated.points, options.box_factor)?;
-            samples = moved;
-            normals.extend(before.iter().map(|&s| treated.normals[s as usize]));
+            samples = samples.moved(&treated.points, options.box_factor)?;
         }
         Err(report) => stats.noise = report,
     }
@@ -198,8 +194,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
 
     // 4. Labels, by the geometry on the lattice: no overflow at any scale.
     let on_lattice = poles.balls.on_lattice();
-    let mut pairs = opposites(&poles.of_sample, &delaunay.sites, &on_lattice);
-    drop_askew(&mut pairs, &delaunay.sites, &on_lattice, &normals);
+    let pairs = opposites(&poles.of_sample, &delaunay.sites, &on_lattice);
     let evidence = Evidence {
         balls: &on_lattice,
         outer: &poles.balls.touches_frame,

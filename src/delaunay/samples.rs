@@ -108,21 +108,15 @@ impl Samples {
         self.points.len()
     }
 
-    /// The samples at other places, one for each, in the user's coordinates;
-    /// beside them which sample each was before.
+    /// The samples at other places, one for each, in the user's coordinates.
     ///
     /// # Errors
     /// [`SampleError`], as [`samples`].
-    pub fn moved(
-        &self,
-        points: &[Point],
-        box_factor: f64,
-    ) -> Result<(Samples, Vec<u32>), SampleError> {
+    pub fn moved(&self, points: &[Point], box_factor: f64) -> Result<Samples, SampleError> {
         let mut moved = samples(points, box_factor)?;
         moved.of_input = (self.of_input.iter())
             .map(|&s| moved.of_input[s as usize])
             .collect();
-        let before = moved.source.clone();
         for s in &mut moved.source {
             *s = self.source[*s as usize];
         }
@@ -130,7 +124,7 @@ impl Samples {
         for &s in &moved.of_input {
             moved.multiplicity[s as usize] += 1;
         }
-        Ok((moved, before))
+        Ok(moved)
     }
 
     /// Whether there are no samples (never, once made).

@@ -28,7 +28,7 @@ pub use wind::{wind, Wound};
 use rayon::prelude::*;
 
 use crate::context::{Cancelled, Context, Portion, Stage};
-use crate::geom::{Ball, Point, Side};
+use crate::geom::{Ball, Side};
 use crate::poles::NO_POLE;
 use crate::power::PowerDiagram;
 use crate::predicates::Site;
@@ -74,8 +74,6 @@ impl Evidence<'_> {
 pub struct Opposite {
     /// The poles.
     pub poles: [u32; 2],
-    /// The sample.
-    pub sample: u32,
     /// `-cos` of the angle between them at the sample.
     pub weight: f64,
 }
@@ -83,7 +81,7 @@ pub struct Opposite {
 /// The opposite pairs of all samples with two poles.
 pub fn opposites(of_sample: &[[u32; 2]], sites: &[Site], balls: &[Ball]) -> Vec<Opposite> {
     use crate::geom::vec3::{dot, norm, sub};
-    let pair = |(sample, (poles, s)): (usize, (&[u32; 2], &Site))| {
+    let pair = |(poles, s): (&[u32; 2], &Site)| {
         if poles.contains(&NO_POLE) || poles[0] == poles[1] {
             return None;
         }
@@ -97,35 +95,12 @@ pub fn opposites(of_sample: &[[u32; 2]], sites: &[Site], balls: &[Ball]) -> Vec<
         };
         (weight > 0.0).then_some(Opposite {
             poles: *poles,
-            sample: sample as u32,
             weight,
         })
     };
     let samples = of_sample.par_iter().zip(sites);
-    samples.enumerate().filter_map(pair).collect()
+    samples.filter_map(pair).collect()
 }
-
-/// Drops pairs whose poles lie to the side of their sample rather than along
-/// its normal, where one is known. By Lemma 2 of the paper that cannot be
-/// where the surface is well sampled; it is so for a sample that noise has
-/// put between two sheets, which has both its poles amid the solid.
-pub fn drop_askew(pairs: &mut Vec<Opposite>, sites: &[Site], balls: &[Ball], normals: &[Point]) {
-    use crate::geom::vec3::{dot, norm, sub};
-    pairs.retain(|pair| {
-        let normal = match normals.get(pair.sample as usize) {
-            Some(&normal) if normal != [0.0; 3] => normal,
-            _ => return true,
-        };
-        let s = &sites[pair.sample as usize];
-        pair.poles.iter().all(|&p| {
-            let way = sub(balls[p as usize].centre, [s[0], s[1], s[2]]);
-            dot(way, normal).abs() > ASKEW * norm(way)
-        })
-    });
-}
-
-/// The cosine of 60 degrees.
-const ASKEW: f64 = 0.5;
 
 /// The neighbours of each ball in the power diagram, sentinels left out.
 pub struct Neighbours(Edges);

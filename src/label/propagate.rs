@@ -26,7 +26,7 @@ use crate::geom::Side;
 /// let sites = [[0.0, 0.0, 90.0, 1600.0], [0.0, 0.0, 0.0, 2500.0], [3.0, 0.0, 0.0, 2500.0]];
 /// let balls = sites.map(|s| Ball::new([s[0], s[1], s[2]], s[3].sqrt()));
 /// let diagram = power::power_diagram(&sites, 1024.0, &Context::default())?;
-/// let opposites = [Opposite { poles: [0, 1], sample: 0, weight: 1.0 }];
+/// let opposites = [Opposite { poles: [0, 1], weight: 1.0 }];
 /// let evidence = Evidence {
 ///     balls: &balls,
 ///     outer: &[true, false, false],

@@ -60,8 +60,6 @@ pub struct NoiseReport {
 pub struct Treated {
     /// A place for each sample, in the input's coordinates.
     pub points: Vec<Point>,
-    /// A unit normal there, whichever way round; zero where none is known.
-    pub normals: Vec<Point>,
     /// What was done.
     pub report: NoiseReport,
 }
@@ -122,7 +120,7 @@ pub fn treat(
         if at.neighbours == 0 {
             continue;
         }
-        let way = crate::geom::vec3::dist_sq(from, to.place);
+        let way = crate::geom::vec3::dist_sq(from, *to);
         sum += way;
         report.largest_move = report.largest_move.max(way);
         scales.push(at.noise);
@@ -142,12 +140,8 @@ pub fn treat(
     let points = (feet.iter().enumerate())
         .map(|(s, foot)| match local[s].neighbours {
             0 => samples.points[s],
-            _ => samples.lattice.to_user(foot.place),
+            _ => samples.lattice.to_user(*foot),
         })
         .collect();
-    Ok(Ok(Treated {
-        points,
-        normals: feet.iter().map(|foot| foot.normal).collect(),
-        report,
-    }))
+    Ok(Ok(Treated { points, report }))
 }

@@ -12,19 +12,12 @@ use crate::geom::Point;
 /// Samples between two reports of progress.
 const BLOCK: usize = 1 << 14;
 
-/// Where a sample goes, and the unit normal there; zero for a sample that
-/// stays.
-pub(super) struct Foot {
-    pub place: Point,
-    pub normal: Point,
-}
-
 /// Where each sample goes.
 pub(super) fn project(
     near: &Near,
     local: &[Local],
     context: &Context,
-) -> Result<Vec<Foot>, Cancelled> {
+) -> Result<Vec<Point>, Cancelled> {
     let count = near.len();
     let mut moved = Vec::with_capacity(count);
     for from in (0..count).step_by(BLOCK) {
@@ -33,17 +26,12 @@ pub(super) fn project(
         moved.par_extend(block.into_par_iter().map(|s| {
             let at = near.places[s];
             match local[s].neighbours {
-                0 => stay(at),
+                0 => at,
                 _ => foot(near, at, &local[s]),
             }
         }));
     }
     Ok(moved)
-}
-
-fn stay(place: Point) -> Foot {
-    let normal = [0.0; 3];
-    Foot { place, normal }
 }
 
 /// A fit that misses its samples by more than this times the noise there
@@ -66,10 +54,10 @@ const CUT: f64 = 2.5;
 /// Where that quadric is no fit, it grows from a small one, leaving out what lies
 /// off it (the forward search of Fleishman, Cohen-Or and Silva, 2005): of two
 /// sheets, or the two sides of an edge, that which the sample is on.
-fn foot(near: &Near, at: Point, local: &Local) -> Foot {
+fn foot(near: &Near, at: Point, local: &Local) -> Point {
     let found = near.nearest(at, local.neighbours as usize);
     let Some(reach) = found.last().map(|n| n.0.sqrt()) else {
-        return stay(at);
+        return at;
     };
     let offsets: Vec<Point> = (found.iter())
         .map(|n| sub(near.places[n.1 as usize], at))
@@ -83,7 +71,7 @@ fn foot(near: &Near, at: Point, local: &Local) -> Foot {
     };
     let weights = weights_within(reach, found.len());
     let Some(mut fit) = Fit::of(at, &offsets, &weights, reach) else {
-        return stay(at);
+        return at;
     };
     if fit.deviation(&weights) > CROSSED * local.noise {
         let cut = CUT * local.noise;
@@ -111,12 +99,11 @@ fn foot(near: &Near, at: Point, local: &Local) -> Foot {
         fit = before.unwrap_or(fit);
     }
     // No sample leaves its neighbourhood.
-    let (foot, normal) = fit.foot();
+    let foot = fit.foot();
     let way = sub(foot, at);
     let most = reach / 2.0;
-    let place = match norm(way) {
+    match norm(way) {
         far if far > most => add(at, scale(way, most / far)),
         _ => foot,
-    };
-    Foot { place, normal }
+    }
 }
