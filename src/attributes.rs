@@ -11,8 +11,8 @@
 //!
 //! **Faces.** The plane between two power cells is at right angles to the line
 //! of their centres, so inner to outer centre is the face's outward normal.
-//! The inner ball tells how thick the solid is there, and inner and outer ball
-//! together whether the face spans a place that was not sampled.
+//! The inner ball tells how thick the solid is there. Which faces span places
+//! that were not sampled, [`crate::holes`] says.
 
 use crate::geom::vec3::{add, cross, dist_sq, norm, scale, sub};
 use crate::geom::{Ball, Point};
@@ -23,10 +23,6 @@ use crate::surface::raw::{Crust, NONE};
 
 /// The most input points that one vertex is blended from.
 pub const MOST: usize = 8;
-
-/// Faces are flagged as spanning a hole where both balls are larger than this
-/// many spacings of the samples around.
-const LARGE: f64 = 2.0;
 
 /// For each vertex of a mesh the input points it has its values from, with
 /// weights that sum up to one.
@@ -436,28 +432,5 @@ impl Reconstruction {
             by_point[point as usize] = distance;
         }
         sources.numbers(&by_point)
-    }
-
-    /// For each face 1 where it spans a place without samples, else 0 (section
-    /// 7.1 of the paper): its inner and its outer ball intersect deeply, by
-    /// the angle of the options, and both are larger than twice the spacing of
-    /// the samples at its corners. On a well sampled surface inner and outer
-    /// balls meet at shallow angles; where a part is missing they bulge
-    /// through the gap.
-    pub fn face_holes(&self) -> Vec<u8> {
-        let deep = -self.stats.options.deep_angle.to_radians().cos();
-        let spacing = self.vertex_spacing();
-        (self.crust.mesh.faces().enumerate())
-            .map(|(f, face)| {
-                let Some((inner, outer)) = self.pair(f) else {
-                    return 0;
-                };
-                let known = face.iter().map(|&v| spacing[v as usize]);
-                let known = known.filter(|s| s.is_finite());
-                let (sum, count) = known.fold((0.0, 0.0), |(s, n), x| (s + x, n + 1.0));
-                let large = inner.radius.min(outer.radius) > LARGE * sum / count;
-                u8::from(large && inner.depth(outer).is_some_and(|d| d > deep))
-            })
-            .collect()
     }
 }

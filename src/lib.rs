@@ -30,7 +30,8 @@
 //! - [`PowerShape`]: a medial axis as balls, edges, triangles, tetrahedra
 //! - [`PolarBall`], [`Ball`], [`Side`]: the balls and their labels
 //! - [`PolygonMesh`], [`Point`], [`Bounds`]: plain geometry
-//! - [`attributes`]: colours, normals and values of the input on the surface, thickness and holes on its faces
+//! - [`attributes`]: colours, normals and values of the input on the surface, thickness on its faces
+//! - [`holes`]: faces that bridge missing data, and the surface without them
 //!
 //! **One stage at a time** (section 5 of the paper)
 //! - [`delaunay::samples`]: finite, distinct points on a lattice
@@ -82,6 +83,7 @@ pub mod delaunay;
 pub mod error;
 mod fit;
 pub mod geom;
+pub mod holes;
 pub mod inverse;
 pub mod io;
 pub mod label;

@@ -52,10 +52,10 @@ const ROWS: [(&[&str], &str); 16] = [
     ),
     (&["pipeline"], "the stages in order"),
     (
-        &["attributes", "axis", "offset"],
+        &["attributes", "axis", "holes", "offset"],
         "what a result's vertices and faces inherit from points and balls; \
-         what is left of its medial axis; surfaces at a distance. None needs \
-         the others",
+         what is left of its medial axis; places without samples; surfaces at \
+         a distance. None needs the others",
     ),
     (
         &["inverse"],

@@ -13,7 +13,7 @@ use super::formats::dotted;
 use super::from_mat_args::{self, FromMat};
 use super::query_args::{self, Query};
 use super::simplify_args::{self, SimplifyMat};
-use super::wanted::{self, Distance, Distances, Wanted};
+use super::wanted::{self, Distance, Distances, HoleWidth, Holes, Wanted};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -241,6 +241,26 @@ pub struct Reconstruct {
     #[arg(long, help_heading = SURFACE)]
     pub drop_cavities: bool,
 
+    /// What becomes of places where nothing was sampled: `keep` bridges them
+    /// (the default), `open` leaves them out.
+    ///
+    /// With `open` the mesh is manifold and oriented, and has a border. Every
+    /// loop of it is told by -v, --stats and --json with its length and area.
+    /// Scans of one side, terrain and rooms, which bound no solid, come out as
+    /// what was seen.
+    #[arg(long, value_name = "HOW", value_enum, help_heading = SURFACE)]
+    pub holes: Option<Holes>,
+
+    /// How wide a gap must be to be a hole: a length in the input's unit, a
+    /// share of the diagonal such as 1%, or a multiple of the spacing of the
+    /// samples around such as 10x; by default 8x.
+    ///
+    /// The width is the diameter of the largest disc on the surface that no
+    /// sample touches. Gaps below 4 spacings are none whatever is said. The
+    /// attribute `hole` marks the faces.
+    #[arg(long, value_name = "SIZE", value_parser = wanted::hole_width, allow_hyphen_values = true, help_heading = SURFACE)]
+    pub hole_size: Option<HoleWidth>,
+
     /// Reduce the mesh to so many triangles.
     ///
     /// Vertices that stay are where they were; those whose loss moves the
@@ -259,8 +279,8 @@ pub struct Reconstruct {
     /// Names: sample (the input point at each vertex, -1 for none), normals,
     /// colours, columns of the input; and of faces thickness, gap (how thick
     /// the solid and the space before it are), polar_radii (the sum of the
-    /// radii of the two polar balls), component (0 the largest part), hole (1 where nothing was sampled). By default sample and what
-    /// the input has. Vertices that are no input points are blended from
+    /// radii of the two polar balls), component (0 the largest part), hole (1 where
+    /// nothing was sampled). By default sample, hole and what the input has. Vertices that are no input points are blended from
     /// those next to them. PLY and JSON hold all of it, OBJ, OFF and GLB
     /// normals and colours, STL nothing.
     #[arg(long, value_name = "LIST", value_parser = Wanted::parse, help_heading = SURFACE)]
@@ -342,6 +362,10 @@ pub struct Check {
     /// Format of the mesh, whatever its name.
     #[arg(long, value_name = "FORMAT")]
     pub input_format: Option<String>,
+
+    /// Allow a border: edges with one face are no fault.
+    #[arg(long)]
+    pub border: bool,
 
     /// Print the findings as one JSON object on standard output.
     #[arg(long)]

@@ -44,7 +44,10 @@ pub fn check(args: &Check) -> Result<ExitCode, Failure> {
     let report = judge(&mesh, &CheckOptions::default(), &context);
     bar.clear();
     let report = report.map_err(|_| Failure::interrupted())?;
-    let sound = report.is_watertight();
+    let sound = match args.border {
+        true => report.is_bordered(),
+        false => report.is_watertight(),
+    };
     let text = if args.json {
         let mut object = json!(report);
         object["ok"] = json!(sound);
@@ -52,7 +55,7 @@ pub fn check(args: &Check) -> Result<ExitCode, Failure> {
         object["format"] = json!(format);
         format!("{object:#}\n")
     } else {
-        describe(&args.mesh, &report, sound)
+        describe(&args.mesh, &report, sound, args.border)
     };
     if !args.quiet {
         Target::Stdout.stage(|out| out.write_all(text.as_bytes()))?;
@@ -64,15 +67,15 @@ pub fn check(args: &Check) -> Result<ExitCode, Failure> {
     })
 }
 
-fn describe(path: &Path, report: &Report, sound: bool) -> String {
+fn describe(path: &Path, report: &Report, sound: bool, border: bool) -> String {
     let mut lines = Vec::new();
     lines.push(format!(
         "{}: {}",
         name(path),
-        if sound {
-            "sound: closed, manifold, oriented, no crossing faces"
-        } else {
-            "not sound"
+        match (sound, report.is_closed()) {
+            (true, true) => "sound: closed, manifold, oriented, no crossing faces",
+            (true, false) => "sound with a border: manifold, oriented, no crossing faces",
+            (false, _) => "not sound",
         }
     ));
     let number = |count: u64, one, many| counted(count as usize, one, many);
@@ -84,19 +87,33 @@ fn describe(path: &Path, report: &Report, sound: bool) -> String {
     if let Some(genus) = report.genus {
         size.push(format!("genus {genus}"));
     }
-    if report.cavities > 0 {
+    if report.cavities > 0 && report.counts.open_edge == 0 {
         size.push(number(report.cavities, "cavity", "cavities"));
     }
+    let loops: u64 = report.shells.iter().map(|s| s.loops).sum();
+    if loops > 0 {
+        size.push(number(loops, "border loop", "border loops"));
+    }
     lines.push(size.join(", "));
-    lines.push(format!("volume {}, area {}", report.volume, report.area));
-    lines.extend(faults_in_words(report));
+    lines.push(match report.counts.open_edge == 0 {
+        true => format!("volume {}, area {}", report.volume, report.area),
+        false => format!("area {}", report.area),
+    });
+    lines.extend(faults_in_words(report, border));
+    if report.counts.open_edge > 0 && !border && report.is_bordered() {
+        lines.push(
+            "else sound: manifold, oriented, no crossing faces; --border allows open edges"
+                .to_owned(),
+        );
+    }
     let mut text = lines.join("\n  ");
     text.push('\n');
     text
 }
 
-/// What is wrong with a mesh, a line for each kind of fault.
-pub fn faults_in_words(report: &Report) -> Vec<String> {
+/// What is wrong with a mesh, a line for each kind of fault. With `border`
+/// open edges are no fault, and what volumes tell of open shells neither.
+pub fn faults_in_words(report: &Report, border: bool) -> Vec<String> {
     let mut lines = Vec::new();
     if report.faces == 0 {
         lines.push("no faces".to_owned());
@@ -105,9 +122,14 @@ pub fn faults_in_words(report: &Report) -> Vec<String> {
     if report.faces > 0 && closed && report.volume <= 0.0 {
         lines.push("the volume is not positive: is the mesh inside out?".to_owned());
     }
+    let allowed = |f: &Finding| matches!(f, Finding::OpenEdge { .. } | Finding::InsideOut { .. });
+    let border = border && report.counts.open_edge > 0;
     for (count, what, is_of_kind) in faults(report) {
+        let first = report.findings.iter().find(|f| is_of_kind(f));
+        if border && first.is_some_and(allowed) {
+            continue;
+        }
         if count > 0 {
-            let first = report.findings.iter().find(|f| is_of_kind(f));
             let place = first.map(|f| format!(", first: {}", place(f)));
             lines.push(format!(
                 "{}{}",

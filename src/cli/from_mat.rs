@@ -285,7 +285,7 @@ fn sound(
     if report.is_watertight() && made.crossings_left == 0 {
         return Ok(report);
     }
-    let mut what = faults_in_words(&report);
+    let mut what = faults_in_words(&report, false);
     if what.is_empty() {
         what.push("faces cross".to_owned());
     }

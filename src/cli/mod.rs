@@ -11,6 +11,7 @@ mod formats;
 mod from_mat;
 mod from_mat_args;
 mod generate;
+mod holes;
 mod offset;
 mod output;
 mod plan;

@@ -211,7 +211,7 @@ fn sound(offset: &Offset, report: &Report, path: &Path) -> Result<(), Failure> {
     if report.is_watertight() && offset.crossings_left == 0 {
         return Ok(());
     }
-    let mut what = faults_in_words(report);
+    let mut what = faults_in_words(report, false);
     if what.is_empty() {
         what.push("faces cross".to_owned());
     }

@@ -6,6 +6,7 @@ use std::io::IsTerminal;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
+use powercrust::holes::DEFAULT_SPACINGS;
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat, ReadOptions, WriteOptions};
 use powercrust::surface::ShellFilter;
 use powercrust::{Error, Faces, Options};
@@ -15,7 +16,7 @@ use super::fail::{name, reason, Failure};
 use super::formats::{axis_format, extension, input_format, mesh_format, poles_format};
 use super::output::Target;
 use super::show::Talk;
-use super::wanted::{Fewer, Wanted};
+use super::wanted::{Fewer, HoleWidth, Holes, Wanted};
 
 /// The skinniness bound `--sharp` takes when none is given: near it the error
 /// at edges is least (a cube of 10,000 random samples: 0.0005 with 0.4, 0.015
@@ -33,6 +34,10 @@ pub struct Plan {
     pub threads: Option<NonZeroUsize>,
     /// Which parts to keep.
     pub shells: ShellFilter,
+    /// What becomes of places where nothing was sampled.
+    pub holes: Holes,
+    /// Which places these are.
+    pub hole_size: HoleWidth,
     /// How many triangles to reduce to.
     pub fewer: Option<Fewer>,
     /// Which values the mesh carries.
@@ -131,6 +136,8 @@ impl Plan {
                 min_volume: args.min_volume,
                 drop_cavities: args.drop_cavities,
             },
+            holes: args.holes.unwrap_or_default(),
+            hole_size: (args.hole_size).unwrap_or(HoleWidth::Spacings(DEFAULT_SPACINGS)),
             fewer: (args.faces.map(|n| Fewer::Faces(n as usize))).or(args.reduce.map(Fewer::OneIn)),
             attributes: args.attributes.clone().unwrap_or_default(),
             json: args.reporting.json,

@@ -1,14 +1,15 @@
 //! From the reconstruction to the mesh that is written: shells dropped,
 //! triangles reduced, values attached.
 
+use powercrust::holes::{Holes, Loop};
 use powercrust::io::{Attribute, AttributeValues, Cloud, MeshAttributes};
 use powercrust::mesh::{decimate, deviation, DecimateError, Deviation};
 use powercrust::surface::{filter_shells, Selection, Shells, NONE};
-use powercrust::{Context, Crust, Reconstruction};
+use powercrust::{Bounds, Context, Crust, Reconstruction};
 
 use super::fail::{Code, Failure};
 use super::plan::Plan;
-use super::wanted::{Wanted, OWN};
+use super::wanted::{self, Wanted, OWN};
 
 /// Values of a column, owned.
 enum Column {
@@ -131,7 +132,6 @@ impl Carried {
         face("component", &|| {
             Column::Int(shells.part_of_face.iter().map(|&p| p as i32).collect())
         });
-        face("hole", &|| Column::Byte(result.face_holes()));
         Ok(out)
     }
 
@@ -187,6 +187,10 @@ pub struct Product {
     /// Parts and cavities written.
     pub shells: Shells,
     pub reduced: Option<Reduced>,
+    /// Where nothing was sampled.
+    pub holes: Holes,
+    /// The border, if holes were left open.
+    pub border: Option<Vec<Loop>>,
 }
 
 /// What reducing the triangles came to.
@@ -228,16 +232,42 @@ pub fn make(
         result.crust = crust;
         shells = Shells::of(&result.crust.mesh);
     }
+    let diagonal = Bounds::of(&cloud.points).map_or(1.0, |b| b.diagonal());
+    let mut holes = result.holes(plan.hole_size.of(diagonal));
+    if plan.attributes.wants("hole", true) {
+        carried
+            .faces
+            .push(("hole".to_owned(), Column::Byte(holes.flags())));
+    }
     let reduced = match plan.fewer {
         None => None,
         Some(fewer) => {
             let asked = fewer.of(result.crust.mesh.face_count());
             let (selection, reduced) = reduce(&mut result.crust, asked, context)?;
             carried.select(&selection);
+            holes.select(&selection);
             Some(reduced)
         }
     };
+    let border = match plan.holes {
+        wanted::Holes::Keep => None,
+        wanted::Holes::Open => {
+            let opened = holes.open(&result.crust);
+            if opened.crust.mesh.face_count() == 0 {
+                return Err(Failure::new(
+                    Code::Unfit,
+                    "nothing is left: every face bridges missing data",
+                )
+                .hint("raise --hole-size, or leave --holes open out"));
+            }
+            carried.select(&opened.selection);
+            result.crust = opened.crust;
+            Some(opened.loops)
+        }
+    };
     Ok(Product {
+        holes,
+        border,
         carried,
         before,
         shells,

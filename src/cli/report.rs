@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use powercrust::holes::{Holes, Loop};
 use powercrust::io::{as_written, Cloud, MeshFormat};
 use powercrust::mesh::{check, CheckOptions, Report as Findings};
 use powercrust::surface::ShellFilter;
@@ -10,10 +11,12 @@ use serde_json::{json, Value};
 
 use super::check::faults_in_words;
 use super::fail::{name, Code, Failure};
+use super::holes;
 use super::output::Target;
 use super::plan::Plan;
 use super::product::{Product, Reduced};
 use super::show::{counted, grouped, Talk};
+use super::wanted;
 
 /// What the run found, for the summary, `--json` and `--stats`.
 pub struct Report {
@@ -21,6 +24,8 @@ pub struct Report {
     /// Rounding by the file spoils the mesh.
     rounded: bool,
     reduced: Option<Reduced>,
+    holes: Holes,
+    border: Option<Vec<Loop>>,
     parts: usize,
     cavities: usize,
     samples: usize,
@@ -65,6 +70,14 @@ pub fn in_numbers(shape: &PowerShape) -> Value {
         "tetrahedra": shape.tetrahedra.len(),
         "betti": shape.betti(),
     })
+}
+
+/// Whether a mesh is what the plan asks for, by exact judgement.
+fn is_sound(findings: &Findings, plan: &Plan) -> bool {
+    match plan.holes {
+        wanted::Holes::Keep => findings.is_watertight(),
+        wanted::Holes::Open => findings.is_bordered(),
+    }
 }
 
 impl Report {
@@ -124,9 +137,17 @@ impl Report {
             },
         });
         if plan.verify {
-            head["mesh"]["sound"] = json!(findings.is_watertight());
+            head["mesh"]["sound"] = json!(is_sound(&findings, plan));
             head["mesh"]["crossing"] = json!(findings.counts.crossing);
             head["mesh"]["touching"] = json!(findings.counts.touching);
+        }
+        head["holes"] = holes::in_full(plan, product);
+        if product.border.is_some() {
+            // Those of the solid before it was opened tell nothing of the mesh.
+            head["mesh"]["components"] = json!(findings.shells.len());
+            for of_solid in ["cavities", "largest_volumes", "volume"] {
+                head["mesh"][of_solid] = Value::Null;
+            }
         }
         let (kept, all) = (&product.shells, &product.before);
         if plan.shells != ShellFilter::default() {
@@ -154,11 +175,19 @@ impl Report {
         summary["noise"] = json!(result.stats.noise);
         summary["duplicates"] = json!(result.stats.duplicates);
         Ok(Report {
-            rounded: rounded && !findings.is_watertight(),
-            findings,
+            rounded: rounded && !is_sound(&findings, plan),
             reduced: product.reduced,
-            parts: kept.part_volumes.len(),
-            cavities: kept.cavities.len(),
+            parts: match product.border {
+                None => kept.part_volumes.len(),
+                Some(_) => findings.shells.len(),
+            },
+            cavities: match product.border {
+                None => kept.cavities.len(),
+                Some(_) => 0,
+            },
+            findings,
+            holes: product.holes.clone(),
+            border: product.border.clone(),
             samples: result.stats.samples,
             stages: result.stats.seconds.clone(),
             inner_axis,
@@ -170,10 +199,10 @@ impl Report {
 
     /// An error if the mesh was to be verified and is not sound.
     pub fn verdict(&self, plan: &Plan) -> Result<(), Failure> {
-        if !plan.verify || self.findings.is_watertight() {
+        if !plan.verify || is_sound(&self.findings, plan) {
             return Ok(());
         }
-        let what = faults_in_words(&self.findings).join("; ");
+        let what = faults_in_words(&self.findings, self.border.is_some()).join("; ");
         Err(Failure::new(
             Code::Unfit,
             format!(
@@ -186,7 +215,8 @@ impl Report {
 
     /// An error if what was written has faults that the library knows of.
     pub fn admit(&self, plan: &Plan, crossings_left: usize) -> Result<(), Failure> {
-        match known_faults(crossings_left, self.findings.is_closed()) {
+        let closed = self.border.is_some() || self.findings.is_closed();
+        match known_faults(crossings_left, closed) {
             None => Ok(()),
             Some(what) => Err(
                 Failure::new(Code::Unfit, format!("{}: {what}", self.place(plan)))
@@ -210,6 +240,7 @@ impl Report {
             let line = format_args!("{stage:>10} {seconds:8.3} s");
             plan.talk.at(Talk::Verbose, line);
         }
+        holes::tell(plan, &self.holes, self.border.as_deref());
         plan.talk.at(Talk::Debug, format_args!("{:#}", self.stats));
         plan.talk.at(Talk::Plain, self.line(plan, seconds));
         if plan.json {
@@ -237,6 +268,7 @@ impl Report {
         if let Some(genus) = found.genus {
             parts.push(format!("genus {genus}"));
         }
+        parts.extend(holes::in_short(&self.holes, self.border.as_deref()));
         if let Some(reduced) = &self.reduced {
             let moved = 100.0 * reduced.moved.mean_of_diagonal;
             parts.push(format!("moved by {moved:.2e} % of the diagonal"));
@@ -245,7 +277,7 @@ impl Report {
             }
         }
         if self.rounded {
-            let what = faults_in_words(found).join("; ");
+            let what = faults_in_words(found, self.border.is_some()).join("; ");
             parts.push(format!("not sound as rounded in the file: {what}"));
         }
         if plan.verify {

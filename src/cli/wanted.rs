@@ -1,6 +1,7 @@
 //! What the user says in words that are no plain numbers: which values the
 //! mesh carries, which parts it keeps, sizes with units.
 
+use powercrust::holes::{HoleSize, GROWN};
 use powercrust::io::MeshFormat;
 use powercrust::surface::{Keep, MinVolume};
 use powercrust::NoiseOption;
@@ -133,6 +134,53 @@ pub fn length(text: &str) -> Result<Length, String> {
         Ok(v) if v >= 0.0 && v.is_finite() => Ok(Length::Absolute(v)),
         _ => Err("expected a length, or a share of the diagonal such as 1%".to_owned()),
     }
+}
+
+/// What becomes of places where nothing was sampled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Holes {
+    /// They are bridged: the mesh is closed.
+    #[default]
+    Keep,
+    /// They are left out: the mesh has a border.
+    Open,
+}
+
+/// From which width on a gap is a hole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoleWidth {
+    /// In spacings of the samples around.
+    Spacings(f64),
+    /// In the input's unit, or a share of the diagonal.
+    Length(Length),
+}
+
+impl HoleWidth {
+    /// The size, of an input of this diagonal.
+    pub fn of(self, diagonal: f64) -> HoleSize {
+        match self {
+            HoleWidth::Spacings(spacings) => HoleSize::Spacings(spacings),
+            HoleWidth::Length(length) => HoleSize::Length(length.of(diagonal)),
+        }
+    }
+}
+
+/// Reads a width: a length, a share of the diagonal with `%`, or a multiple of
+/// the sample spacing with `x`.
+pub fn hole_width(text: &str) -> Result<HoleWidth, String> {
+    let wrong = "expected a length above 0, a share of the diagonal such as 1%, or a multiple of the spacing such as 10x, at least 4x";
+    let width = match text.strip_suffix('x') {
+        Some(number) => match number.trim().parse::<f64>() {
+            Ok(v) if v >= GROWN && v.is_finite() => Some(HoleWidth::Spacings(v)),
+            _ => None,
+        },
+        None => match length(text) {
+            Ok(Length::Absolute(v) | Length::Percent(v)) if v <= 0.0 => None,
+            other => other.ok().map(HoleWidth::Length),
+        },
+    };
+    width.ok_or_else(|| wrong.to_owned())
 }
 
 /// A length of either sign in the unit of the points, or a share of the diagonal of their
@@ -270,6 +318,16 @@ mod tests {
         assert_eq!(length("0.5"), Ok(Length::Absolute(0.5)));
         assert_eq!(length("2%").map(|l| l.of(50.0)), Ok(1.0));
         assert!(length("-1").is_err() && length("x%").is_err() && length("inf").is_err());
+        assert_eq!(hole_width("10x"), Ok(HoleWidth::Spacings(10.0)));
+        assert_eq!(
+            hole_width("2%").map(|w| w.of(50.0)),
+            Ok(HoleSize::Length(1.0))
+        );
+        assert_eq!(
+            hole_width("0.5").map(|w| w.of(50.0)),
+            Ok(HoleSize::Length(0.5))
+        );
+        assert!(hole_width("3x").is_err() && hole_width("0").is_err() && hole_width("x").is_err());
         let list = distances("0.5,-1%, 2").unwrap().0;
         let found: Vec<f64> = list.iter().map(|l| l.of(10.0)).collect();
         assert_eq!(found, [0.5, -0.1, 2.0]);

@@ -13,6 +13,7 @@ mod decimate;
 mod deviation;
 mod distance;
 mod frame;
+pub(crate) mod halves;
 mod intersect;
 mod measure;
 mod moving;

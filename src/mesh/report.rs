@@ -191,6 +191,26 @@ impl Report {
             && self.volume > 0.0
     }
 
+    /// Whether the mesh is a surface with borders, or closed, in every clause
+    /// that can be judged: as [`Self::is_watertight`], but edges with one face
+    /// are allowed, and where there are some, volumes tell nothing and are not
+    /// looked at.
+    pub fn is_bordered(&self) -> bool {
+        let c = &self.counts;
+        let closed = Report {
+            counts: Counts {
+                open_edge: 0,
+                inside_out: if c.open_edge > 0 { 0 } else { c.inside_out },
+                ..*c
+            },
+            volume: if c.open_edge > 0 { 1.0 } else { self.volume },
+            findings: Vec::new(),
+            shells: Vec::new(),
+            ..self.clone()
+        };
+        closed.is_watertight()
+    }
+
     /// Whether the mesh is watertight and no two of its faces come together
     /// but in vertices and edges they share.
     pub fn is_embedded(&self) -> bool {

@@ -6,6 +6,7 @@ mod check;
 mod done;
 mod from_mat;
 mod help;
+mod holes;
 mod interrupted;
 mod offset;
 mod query;
