@@ -253,10 +253,10 @@ pub struct Reconstruct {
 
     /// How wide a gap must be to be a hole: a length in the input's unit, a
     /// share of the diagonal such as 1%, or a multiple of the spacing of the
-    /// samples around such as 10x; by default 8x.
+    /// samples around such as 10x; by default 5x.
     ///
     /// The width is the diameter of the largest disc on the surface that no
-    /// sample touches. Gaps below 4 spacings are none whatever is said. The
+    /// sample touches. Gaps below 3.5 spacings are none whatever is said. The
     /// attribute `hole` marks the faces.
     #[arg(long, value_name = "SIZE", value_parser = wanted::hole_width, allow_hyphen_values = true, help_heading = SURFACE)]
     pub hole_size: Option<HoleWidth>,

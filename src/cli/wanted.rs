@@ -169,7 +169,7 @@ impl HoleWidth {
 /// Reads a width: a length, a share of the diagonal with `%`, or a multiple of
 /// the sample spacing with `x`.
 pub fn hole_width(text: &str) -> Result<HoleWidth, String> {
-    let wrong = "expected a length above 0, a share of the diagonal such as 1%, or a multiple of the spacing such as 10x, at least 4x";
+    let wrong = "expected a length above 0, a share of the diagonal such as 1%, or a multiple of the spacing such as 10x, at least 3.5x";
     let width = match text.strip_suffix('x') {
         Some(number) => match number.trim().parse::<f64>() {
             Ok(v) if v >= GROWN && v.is_finite() => Some(HoleWidth::Spacings(v)),

@@ -1,5 +1,7 @@
 //! Faces of holes in patches, and how large each is.
 
+use std::f64::consts::PI;
+
 use super::width::Widths;
 use super::{HoleSize, GROWN};
 use crate::geom::vec3::{add, cross, norm, scale, sub};
@@ -16,17 +18,39 @@ const FEWEST: usize = 10;
 /// A place without samples.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Patch {
-    /// The diameter of the largest disc on it that no sample touches, in the
-    /// input's unit.
+    /// How wide it is, in the input's unit: the width of its widest face, but
+    /// no more than the diameter of a disc of its area.
     pub width: f64,
     /// The same in spacings of the samples around.
     pub spacings: f64,
     /// Area of its faces, in the square of the input's unit.
     pub area: f64,
-    /// Number of its faces.
+    /// Number of its faces; counted anew when faces are selected.
     pub faces: usize,
     /// The mean of the places of its faces, weighted by area.
     pub centre: Point,
+}
+
+impl Patch {
+    /// The width of a run of faces; nothing else is known yet.
+    fn of(run: &[u32], widths: &Widths, sizes: &[(f64, Point)], unit: f64) -> Patch {
+        let area: f64 = run.iter().map(|&f| sizes[f as usize].0).sum();
+        let disc = 2.0 * unit * (area / PI).sqrt();
+        let mut patch = Patch {
+            width: 0.0,
+            spacings: 0.0,
+            area: 0.0,
+            faces: 0,
+            centre: [0.0; 3],
+        };
+        for &f in run {
+            let f = f as usize;
+            let width = widths.width[f].min(disc);
+            patch.width = patch.width.max(width);
+            patch.spacings = patch.spacings.max(width / widths.spacing[f]);
+        }
+        patch
+    }
 }
 
 /// The places without samples on a crust.
@@ -49,57 +73,58 @@ impl Holes {
         let widths = Widths::of(result, &halves);
         let count = crust.mesh.face_count();
         let wide = |f: u32| widths.spacings(f as usize) > GROWN;
-        let large = |f: u32| match size {
-            HoleSize::Spacings(most) => widths.spacings(f as usize) >= most,
-            HoleSize::Length(most) => widths.width[f as usize] >= most,
-        };
+        let mesh = &crust.mesh;
+        let unit = Bounds::of(&mesh.vertices).map_or(1.0, |b| b.diagonal());
+        let sizes: Vec<(f64, Point)> = (0..count)
+            .map(|f| area_and_middle(mesh, f, mesh.vertices[0], unit))
+            .collect();
         let mut of_face = vec![NONE; count];
-        let mut patches = 0;
+        let mut patches = Vec::new();
         for run in runs(count, &halves, wide) {
-            if run.iter().any(|&f| large(f)) {
-                run.iter().for_each(|&f| of_face[f as usize] = patches);
-                patches += 1;
+            let patch = Patch::of(&run, &widths, &sizes, unit);
+            let large = match size {
+                HoleSize::Spacings(least) => patch.spacings >= least,
+                HoleSize::Length(least) => patch.width >= least,
+            };
+            if large {
+                let number = patches.len() as u32;
+                run.iter().for_each(|&f| of_face[f as usize] = number);
+                patches.push(patch);
             }
         }
-        if patches > 0 {
+        if !patches.is_empty() {
             drown(crust, &halves, &mut of_face);
         }
-        Holes::measured(&crust.mesh, &widths, of_face, patches as usize)
+        Holes::measured(of_face, patches, &sizes, mesh, unit)
     }
 
-    fn measured(mesh: &PolygonMesh, widths: &Widths, mut of_face: Vec<u32>, count: usize) -> Holes {
-        let unit = Bounds::of(&mesh.vertices).map_or(1.0, |b| b.diagonal());
-        let empty = Patch {
-            width: 0.0,
-            spacings: 0.0,
-            area: 0.0,
-            faces: 0,
-            centre: [0.0; 3],
-        };
-        let mut patches = vec![empty; count];
-        // In units of the diagonal, about the first vertex.
-        let origin = mesh.vertices.first().copied().unwrap_or_default();
+    /// Areas and middles of patches, and their order. Sizes are in units of
+    /// the diagonal, about the first vertex.
+    fn measured(
+        mut of_face: Vec<u32>,
+        mut patches: Vec<Patch>,
+        sizes: &[(f64, Point)],
+        mesh: &PolygonMesh,
+        unit: f64,
+    ) -> Holes {
         let (mut whole, mut bridged) = (0.0, 0.0);
-        for (f, &patch) in of_face.iter().enumerate() {
-            let (area, middle) = area_and_middle(mesh, f, origin, unit);
+        for (&patch, &(area, middle)) in of_face.iter().zip(sizes) {
             whole += area;
             if let Some(patch) = patches.get_mut(patch as usize) {
                 bridged += area;
                 patch.area += area;
                 patch.faces += 1;
                 patch.centre = add(patch.centre, scale(middle, area));
-                patch.width = patch.width.max(widths.width[f]);
-                patch.spacings = patch.spacings.max(widths.spacings(f));
             }
         }
         for patch in &mut patches {
             let middle = scale(patch.centre, 1.0 / patch.area.max(f64::MIN_POSITIVE));
-            patch.centre = add(origin, scale(middle, unit));
+            patch.centre = add(mesh.vertices[0], scale(middle, unit));
             patch.area *= unit * unit;
         }
-        let mut order: Vec<usize> = (0..count).collect();
+        let mut order: Vec<usize> = (0..patches.len()).collect();
         order.sort_by(|&a, &b| patches[b].area.total_cmp(&patches[a].area).then(a.cmp(&b)));
-        let mut rank = vec![0; count];
+        let mut rank = vec![0; patches.len()];
         for (new, &old) in order.iter().enumerate() {
             rank[old] = new as u32;
         }
@@ -132,7 +157,7 @@ impl Holes {
     }
 }
 
-/// Twice the area of a face would be its vector area's length if it is flat.
+/// The area of a face and the mean of its corners from `origin`, in `unit`s.
 fn area_and_middle(mesh: &PolygonMesh, f: usize, origin: Point, unit: f64) -> (f64, Point) {
     let face = mesh.face(f);
     let at = |v: u32| scale(sub(mesh.vertices[v as usize], origin), 1.0 / unit);
