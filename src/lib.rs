@@ -20,7 +20,7 @@
 //!
 //! **The whole way**
 //! - [`reconstruct`]: points in, [`Reconstruction`] out
-//! - [`Options`], [`Faces`], [`NoiseOption`]: what may be said; the default says nothing
+//! - [`Options`], [`Faces`], [`NoiseOption`], [`OutlierOption`]: what may be said; the default says nothing
 //! - [`Context`], [`Progress`], [`Silent`], [`Stage`], [`Cancelled`]: threads, progress, a stop button
 //! - [`Error`], [`SampleError`]: why there is no surface
 //! - [`Stats`]: counts, timings, options of a run
@@ -35,6 +35,7 @@
 //!
 //! **One stage at a time** (section 5 of the paper)
 //! - [`delaunay::samples`]: finite, distinct points on a lattice
+//! - [`noise::outliers`]: samples on no surface
 //! - [`noise::treat`]: samples amid noise moved onto the surface
 //! - [`delaunay::delaunay`]: their Delaunay triangulation
 //! - [`poles::poles`]: poles and polar balls, the skinniness test
@@ -105,7 +106,7 @@ pub use context::{Cancelled, Context, Progress, Silent, Stage};
 pub use error::{Error, SampleError};
 pub use geom::{Ball, Bounds, Point, Side};
 pub use mesh::PolygonMesh;
-pub use options::{Faces, NoiseOption, Options};
+pub use options::{Faces, NoiseOption, Options, OutlierOption};
 pub use pipeline::{reconstruct, PolarBall, Reconstruction};
 pub use stats::Stats;
 pub use surface::{Crust, PowerShape};

@@ -15,6 +15,9 @@ pub struct Options {
     /// else. With [`NoiseOption::Auto`] a cloud that is not noisy gives the
     /// same result, to the last bit, as with [`NoiseOption::Off`].
     pub noise: NoiseOption,
+    /// Whether samples that lie on no surface are left out before anything
+    /// else. A cloud without any gives the same result, to the last bit, either way.
+    pub outliers: OutlierOption,
     /// Angle in degrees, in (90, 180), above which two balls intersect deeply
     /// and share evidence (section 5.2).
     pub deep_angle: f64,
@@ -53,6 +56,16 @@ pub enum NoiseOption {
     Scale(f64),
 }
 
+/// What to do with samples that lie on no surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OutlierOption {
+    /// Leave them out, and report them.
+    Auto,
+    /// Keep every sample.
+    Keep,
+}
+
 /// The kind of faces wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -69,6 +82,7 @@ impl Default for Options {
             lambda: None,
             sharp: false,
             noise: NoiseOption::Auto,
+            outliers: OutlierOption::Auto,
             deep_angle: 113.578_178_478_201_83,
             box_factor: 5.0,
             merge: 0.5,

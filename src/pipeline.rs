@@ -5,21 +5,22 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::context::{Context, Stage};
-use crate::delaunay::{delaunay, samples, Lattice};
+use crate::delaunay::{delaunay, samples, Delaunay, Lattice, Samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{
     energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours, MOST_UNHELD,
 };
 use crate::memory;
-use crate::noise::treat;
-use crate::options::{NoiseOption, Options};
+use crate::noise::{outliers, treat, Stray};
+use crate::options::{Options, OutlierOption};
 use crate::poles::{poles, BallLattice, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
 use crate::surface::stage::Job;
 use crate::surface::{drop_strays, power_shape, Crust, PowerShape};
+use crate::tetra::Edges;
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +46,9 @@ pub struct Reconstruction {
     /// Where each sample lies, if samples amid noise were moved
     /// ([`Options::noise`]); empty if all lie where they were given.
     pub moved: Vec<Point>,
+    /// The samples left out because they lie on no surface
+    /// ([`Options::outliers`]): an input point at each, ascending, and why.
+    pub outliers: Vec<(u32, Stray)>,
     /// The power diagram of the balls; its sites are in steps of the lattice
     /// of balls.
     pub power: PowerDiagram,
@@ -152,23 +156,41 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     }
     clock.lap(Stage::Samples, &mut stats);
 
+    let mut left_out = Vec::new();
+    let (mut built, mut graph) = triangulated(&samples, &mut clock, &mut stats, context)?;
+    if options.outliers == OutlierOption::Auto {
+        for _ in 0..OUTLIER_ROUNDS {
+            let Some(found) = outliers(&samples, &graph, &mut stats.outliers) else {
+                break;
+            };
+            for (s, why) in found.iter().enumerate() {
+                left_out.extend(why.map(|why| (samples.source[s], why)));
+            }
+            let keep: Vec<bool> = found.iter().map(Option::is_none).collect();
+            samples = samples.without(&keep, options.box_factor)?;
+            (built, graph) = triangulated(&samples, &mut clock, &mut stats, context)?;
+        }
+        clock.lap(Stage::Noise, &mut stats);
+    }
+
     // Samples amid noise move onto the surface.
     match treat(&samples, options.noise, context)? {
         Ok(treated) => {
             stats.noise = treated.report;
             samples = samples.moved(&treated.points, options.box_factor)?;
+            clock.lap(Stage::Noise, &mut stats);
+            (built, graph) = triangulated(&samples, &mut clock, &mut stats, context)?;
         }
-        Err(report) => stats.noise = report,
+        Err(report) => {
+            stats.noise = report;
+            clock.lap(Stage::Noise, &mut stats);
+        }
     }
-    if options.noise != NoiseOption::Off {
-        clock.lap(Stage::Noise, &mut stats);
-    }
-    let mut delaunay = delaunay(&samples, context)?;
+    let mut delaunay = built;
     stats.delaunay_cells = delaunay.complex.len();
     stats.delaunay_predicates = delaunay.counts;
     // What no later stage reads makes room. The triangulation has the sites.
     delaunay.complex.neighbours = Vec::new();
-    clock.lap(Stage::Delaunay, &mut stats);
 
     // 2. Poles; balls that say nothing new are merged (fact F6).
     let chosen = PoleOptions {
@@ -179,7 +201,8 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     stats.skinny_samples = poles.skinny_samples;
     stats.poles_dropped = poles.dropped;
     stats.poles = poles.balls.len();
-    let (mut poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge, context)?;
+    let (mut poles, spacing) = merge_redundant(&samples, &graph, poles, options.merge, context)?;
+    drop(graph);
     stats.balls = poles.balls.len();
     samples.sites = Vec::new();
     clock.lap(Stage::Poles, &mut stats);
@@ -273,12 +296,14 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     };
     let spacing = spacing.iter().map(|&h| lattice.length_to_user(h));
     let spacing = spacing.collect();
+    left_out.sort_unstable_by_key(|s| s.0);
     clock.lap(Stage::Crust, &mut stats);
     Ok(Reconstruction {
         crust,
         balls,
         sample_source: samples.source,
         moved,
+        outliers: left_out,
         power,
         touching,
         spacing,
@@ -286,6 +311,22 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         ball_lattice: poles.balls.lattice,
         stats,
     })
+}
+
+/// Times that outliers are looked for at most: those left out hide others.
+const OUTLIER_ROUNDS: usize = 4;
+
+/// The Delaunay triangulation of the samples, and its edges.
+fn triangulated(
+    samples: &Samples,
+    clock: &mut Clock,
+    stats: &mut Stats,
+    context: &Context,
+) -> Result<(Delaunay, Edges), Error> {
+    let built = delaunay(samples, context)?;
+    let graph = built.edges(context)?;
+    clock.lap(Stage::Delaunay, stats);
+    Ok((built, graph))
 }
 
 /// Whether 32-bit coordinates tell a hundred places apart across the samples.
@@ -314,9 +355,16 @@ impl Clock {
     fn lap(&mut self, stage: Stage, stats: &mut Stats) {
         let now = Instant::now();
         let seconds = now.duration_since(self.0).as_secs_f64();
-        stats.seconds.push((stage.name().to_string(), seconds));
-        let peak = memory::peak().map(|bytes| (stage.name().to_string(), bytes));
-        stats.peak_bytes.extend(peak);
+        match stats.seconds.iter_mut().find(|s| s.0 == stage.name()) {
+            Some((_, total)) => *total += seconds,
+            None => stats.seconds.push((stage.name().to_string(), seconds)),
+        }
+        if let Some(bytes) = memory::peak() {
+            match stats.peak_bytes.iter_mut().find(|s| s.0 == stage.name()) {
+                Some((_, most)) => *most = bytes,
+                None => stats.peak_bytes.push((stage.name().to_string(), bytes)),
+            }
+        }
         self.0 = now;
     }
 }

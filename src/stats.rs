@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::label::{Energy, Held, Wound};
 use crate::mesh::Shape;
-use crate::noise::NoiseReport;
+use crate::noise::{NoiseReport, OutlierReport};
 use crate::options::Options;
 use crate::predicates::Counts;
 
@@ -13,10 +13,12 @@ use crate::predicates::Counts;
 pub struct Stats {
     /// Points given.
     pub points: usize,
-    /// Distinct samples.
+    /// Distinct samples, those left out as outliers among them.
     pub samples: usize,
     /// Points merged into an equal one.
     pub duplicates: usize,
+    /// Samples left out because they lie on no surface.
+    pub outliers: OutlierReport,
     /// What was found and done about noise.
     pub noise: NoiseReport,
     /// Cells of the Delaunay triangulation, frame included.
@@ -107,6 +109,7 @@ impl Stats {
             points: 0,
             samples: 0,
             duplicates: 0,
+            outliers: OutlierReport::default(),
             noise: NoiseReport::default(),
             delaunay_cells: 0,
             poles: 0,

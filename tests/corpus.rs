@@ -11,7 +11,7 @@ use common::judge::topology;
 use common::random::Random;
 use common::{crust, threads};
 use powercrust::io::{read_cloud, CloudFormat, ReadOptions};
-use powercrust::{reconstruct, Context, Options, Point};
+use powercrust::{reconstruct, Context, Options, OutlierOption, Point};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -40,12 +40,15 @@ fn clouds(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-fn points(path: &Path) -> Vec<Point> {
+/// The points of a file, and whether they are the vertices of a mesh.
+fn points(path: &Path) -> (Vec<Point>, bool) {
     let name = path.display();
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{name}: {e}"));
     let options = ReadOptions { skip_invalid: true };
     let cloud = read_cloud(&bytes, CloudFormat::sniff(&bytes), &options);
-    cloud.unwrap_or_else(|e| panic!("{name}: {e}")).points
+    let cloud = cloud.unwrap_or_else(|e| panic!("{name}: {e}"));
+    let meshed = cloud.report.faces_ignored.is_some_and(|faces| faces > 0);
+    (cloud.points, meshed)
 }
 
 /// What came out of one cloud.
@@ -59,17 +62,26 @@ struct Found {
 /// Reconstructs one cloud and holds it against the facts.
 fn reconstructed(path: &Path, facts: &HashMap<String, HashMap<String, String>>) -> Found {
     let name = path.file_name().expect("a name").to_string_lossy();
-    let points = points(path);
-    let result = crust(&name, &points, &Options::default());
+    let (points, meshed) = points(path);
+    // As the command does: the vertices of a mesh lie on its surface.
+    let options = Options {
+        outliers: match meshed {
+            true => OutlierOption::Keep,
+            false => OutlierOption::Auto,
+        },
+        ..Options::default()
+    };
+    let result = crust(&name, &points, &options);
     let topology = topology(&result.crust.mesh);
     assert!(topology.sound(), "{name}: {topology:?}");
     assert!(result.crust.mesh.volume() > 0.0, "{name}: inside out");
     let met: HashSet<u32> = result.crust.vertex_samples.iter().copied().collect();
-    let samples = result.sample_source.len();
+    let left = result.sample_source.len();
+    let samples = left + result.stats.outliers.left_out;
     let found = Found {
         components: topology.components,
         genus: topology.genus(),
-        no_vertex: (0..samples as u32).filter(|s| !met.contains(s)).count(),
+        no_vertex: (0..left as u32).filter(|s| !met.contains(s)).count(),
     };
     let (components, genus, without) = (found.components, found.genus, found.no_vertex);
     let line = format!("{name},{samples},{components},{genus},{without}");
@@ -113,7 +125,7 @@ fn clouds_of_the_repository() {
 fn neither_order_nor_threads_matter() {
     for path in &clouds(&root().join("scans")) {
         let name = path.display();
-        let given = points(path);
+        let (given, _) = points(path);
         if given.len() > 8_000 {
             continue;
         }

@@ -75,7 +75,7 @@ fn home(name: &str) -> &str {
         "Error" | "SampleError" => "error",
         "Ball" | "Bounds" | "Point" | "Side" => "geom",
         "PolygonMesh" => "mesh",
-        "Faces" | "NoiseOption" | "Options" => "options",
+        "Faces" | "NoiseOption" | "Options" | "OutlierOption" => "options",
         "reconstruct" | "PolarBall" | "Reconstruction" => "pipeline",
         "Stats" => "stats",
         "Crust" | "PowerShape" => "surface",

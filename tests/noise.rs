@@ -1,7 +1,8 @@
 //! Noise: recognised without a parameter, seen through, and nothing done
 //! where there is none.
 
-use powercrust::{reconstruct, Context, NoiseOption, Options, Point};
+use powercrust::noise::Stray;
+use powercrust::{reconstruct, Context, NoiseOption, Options, OutlierOption, Point};
 
 /// Numbers in [0, 1), the same each time.
 fn numbers(mut state: u64) -> impl FnMut() -> f64 {
@@ -105,4 +106,44 @@ fn neither_threads_nor_the_order_of_the_input_matter() {
             assert!(way < 0.2, "{way}");
         }
     }
+}
+
+/// A sphere with outliers strewn through twice its box: the surface and what is
+/// reported are those of the sphere alone.
+#[test]
+fn outliers_are_left_out_and_reported() {
+    const CLEAN: usize = 3000;
+    let mut points = noisy_sphere(CLEAN, 0.0);
+    let mut next = numbers(3);
+    points.extend((0..60).map(|_| [0; 3].map(|_| 4.0 * next() - 2.0)));
+    let with = |outliers| Options {
+        outliers,
+        ..Options::default()
+    };
+    let run = |points: &[Point], outliers| {
+        reconstruct(points, &with(outliers), &Context::default()).unwrap()
+    };
+    let auto = run(&points, OutlierOption::Auto);
+    let found = &auto.outliers;
+    assert!(found.iter().all(|&(p, _)| p as usize >= CLEAN), "{found:?}");
+    assert!(found.iter().filter(|o| o.1 == Stray::Floating).count() >= 50);
+    assert_eq!(found.len(), auto.stats.outliers.left_out);
+    assert!(auto
+        .sample_source
+        .iter()
+        .all(|s| found.iter().all(|o| o.0 != *s)));
+    // Those left lie within three spacings, 0.2, of the sphere.
+    let far = |p: &&Point| (p.iter().map(|v| v * v).sum::<f64>().sqrt() - 1.0).abs() > 0.2;
+    assert_eq!(auto.crust.mesh.vertices.iter().filter(far).count(), 0);
+    let kept = run(&points, OutlierOption::Keep);
+    assert!(kept.outliers.is_empty());
+    assert!(kept.crust.mesh.vertices.iter().filter(far).count() > 10);
+
+    // Without outliers nothing changes.
+    let clean = &points[..CLEAN];
+    let (auto, keep) = (
+        run(clean, OutlierOption::Auto),
+        run(clean, OutlierOption::Keep),
+    );
+    assert_eq!(auto.crust.mesh, keep.crust.mesh);
 }

@@ -98,8 +98,14 @@ fn stages_keep_their_word(points: &[Point], options: &Options) -> Result<(), Tes
     if options.lambda.is_none() {
         prop_assert_eq!(poles::check(&samples, &poles), vec![]);
     }
-    let (poles, spacing) = merge_redundant(&samples, &delaunay, poles, options.merge, &context)
-        .expect("nobody cancelled");
+    let (poles, spacing) = merge_redundant(
+        &samples,
+        &delaunay.edges(&context).unwrap(),
+        poles,
+        options.merge,
+        &context,
+    )
+    .expect("nobody cancelled");
     prop_assert_eq!(spacing.len(), samples.len());
     prop_assert!(spacing.iter().all(|s| *s > 0.0));
     let step = poles.balls.lattice.step();

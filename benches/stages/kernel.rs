@@ -38,7 +38,13 @@ fn merge(bencher: Bencher, cloud: Cloud) {
         .with_inputs(|| poles.clone())
         .input_counter(|poles| ItemsCount::new(poles.balls.len()))
         .bench_local_values(|poles| {
-            simplify::merge_redundant(&run.samples, &run.delaunay, poles, 0.5, &Context::default())
+            simplify::merge_redundant(
+                &run.samples,
+                &run.delaunay.edges(&Context::default()).unwrap(),
+                poles,
+                0.5,
+                &Context::default(),
+            )
         });
 }
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat};
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::{NoiseOption, Options};
+use powercrust::{NoiseOption, Options, OutlierOption};
 
 use super::formats::dotted;
 use super::from_mat_args::{self, FromMat};
@@ -19,8 +19,8 @@ const EXAMPLES: &str = "\
 Examples:
   powercrust points.ply -o crust.ply            a watertight mesh
   powercrust points.ply --sharp -o part.ply     a machine part with sharp edges
-  powercrust points.ply --lambda 0.3 -o crust.ply
-                                                a scan with some noise
+  powercrust points.ply --report-outliers wild.ply -o crust.ply
+                                                which samples lie on no surface
   powercrust points.xyz --mat axis.ma           the medial axis alone
   powercrust simplify-mat axis.ma --eps 1% -o simple.ma
                                                 its stable part
@@ -195,6 +195,15 @@ pub struct Reconstruct {
     #[arg(long, value_name = "NOISE", value_parser = wanted::noise, allow_hyphen_values = true, help_heading = METHOD)]
     pub noise: Option<NoiseOption>,
 
+    /// What to do with samples that lie on no surface: auto, keep.
+    ///
+    /// `auto` leaves out samples alone or in small or sparse groups away from every surface, and, where there are such, those
+    /// that stand off a surface by far more than their neighbours. How many is said, and
+    /// --report-outliers tells which. `keep` keeps every sample. By default auto, but keep
+    /// where the input is a mesh, whose vertices lie on its surface.
+    #[arg(long, value_name = "WHAT", value_parser = wanted::outliers, help_heading = METHOD)]
+    pub outliers: Option<OutlierOption>,
+
     #[arg(long, help = deep_angle_help(), value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub deep_angle: Option<f64>,
 
@@ -304,6 +313,11 @@ pub struct Reconstruct {
     /// Write all polar balls with radius and side, as PLY.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub poles: Option<PathBuf>,
+
+    /// Write the samples left out by --outliers, as PLY, with the number of each in the
+    /// input and why: reason 0 floating, 1 beside the surface
+    #[arg(long, value_name = "FILE", help_heading = EXTRA)]
+    pub report_outliers: Option<PathBuf>,
 
     /// Write counts, timings and options as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]

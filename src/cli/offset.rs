@@ -18,7 +18,7 @@ use super::fail::{name, Code, Failure};
 use super::formats::mesh_format;
 use super::output::{Staged, Target};
 use super::plan::{apart, out, Out, Plan};
-use super::run::{enough_memory, read, stage, unsolved};
+use super::run::{enough_memory, read, stage, tell_outliers, unsolved, usual_outliers};
 use super::show::{counted, Bar, Talk};
 use super::wanted::{distance, Distance};
 
@@ -46,6 +46,7 @@ pub fn offset(args: &Args) -> Result<ExitCode, Failure> {
             .box_factor
             .unwrap_or_else(|| frame_for(bounds, &distances)),
         single,
+        outliers: usual_outliers(&cloud),
         ..plan.options.clone()
     };
     let bar = Bar::new(plan.talk);
@@ -57,6 +58,7 @@ pub fn offset(args: &Args) -> Result<ExitCode, Failure> {
         let failed = |error| refused(&plan, args, error);
         let mut result =
             powercrust::reconstruct(&cloud.points, &options, &context).map_err(failed)?;
+        tell_outliers(plan.talk, &result.stats.outliers);
         result.power.complex = Complex::default();
         let how = OffsetOptions {
             tolerance: args.tolerance.as_ref().map(|t| t.of(diagonal)),

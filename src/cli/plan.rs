@@ -49,6 +49,9 @@ pub struct Plan {
     /// Collapse the flat tetrahedra of the axes.
     pub thin: bool,
     pub poles: Option<Out<()>>,
+    pub outliers: Option<Out<()>>,
+    /// Whether outliers were spoken of on the command line.
+    pub outliers_told: bool,
     pub stats: Option<Out<()>>,
     pub json: bool,
     /// Judge the mesh as written; write it only if it is sound.
@@ -82,6 +85,7 @@ impl Plan {
             &args.mat,
             &args.outer_mat,
             &args.poles,
+            &args.report_outliers,
             &args.stats,
         ];
         if !args.reporting.json && !args.dry_run && results.iter().all(|path| path.is_none()) {
@@ -97,6 +101,7 @@ impl Plan {
             outer_axis: out(&args.outer_mat, |path| axis_format(path, "--outer-mat"))?,
             thin: args.thin,
             poles: out(&args.poles, poles_format)?,
+            outliers: out(&args.report_outliers, poles_format)?,
             stats: out(&args.stats, |_| Ok(()))?,
             ..plan
         };
@@ -117,6 +122,7 @@ impl Plan {
             outer_axis: None,
             thin: false,
             poles: None,
+            outliers: None,
             stats: None,
             write: WriteOptions {
                 ascii: args.ascii,
@@ -130,6 +136,7 @@ impl Plan {
             input: input.to_owned(),
             input_format,
             options,
+            outliers_told: args.outliers.is_some(),
             threads: args.reporting.threads,
             shells: ShellFilter {
                 keep: args.keep.unwrap_or_default(),
@@ -159,6 +166,7 @@ impl Plan {
             of(&self.inner_axis),
             of(&self.outer_axis),
             of(&self.poles),
+            of(&self.outliers),
             of(&self.stats),
         ]
         .into_iter()
@@ -202,8 +210,10 @@ impl Plan {
             .map(|out| out.format)
             .collect();
         let any_axis = |formats: &[AxisFormat]| axes.iter().any(|f| formats.contains(f));
-        let ply =
-            mesh == Some(MeshFormat::Ply) || any_axis(&[AxisFormat::Ply]) || self.poles.is_some();
+        let ply = mesh == Some(MeshFormat::Ply)
+            || any_axis(&[AxisFormat::Ply])
+            || self.poles.is_some()
+            || self.outliers.is_some();
         let stl = mesh == Some(MeshFormat::Stl);
         let text = ((ply || stl) && args.ascii)
             || matches!(
@@ -266,6 +276,7 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         lambda,
         sharp: args.sharp,
         noise: args.noise.unwrap_or(plain.noise),
+        outliers: args.outliers.unwrap_or(plain.outliers),
         deep_angle: args.deep_angle.unwrap_or(plain.deep_angle),
         box_factor: args.box_factor.unwrap_or(plain.box_factor),
         merge: args.merge.unwrap_or(plain.merge),

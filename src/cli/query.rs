@@ -20,7 +20,9 @@ use super::formats::{extension, input_format};
 use super::output::Target;
 use super::plan::{apart, check_input, out, Out};
 use super::query_args::Query;
-use super::run::{enough_memory, misread, read_bytes, stage, unsolved};
+use super::run::{
+    enough_memory, misread, read_bytes, stage, tell_outliers, unsolved, usual_outliers,
+};
 use super::show::{counted, Bar, Talk};
 use super::stop;
 
@@ -232,8 +234,14 @@ fn axis(
             }
             let limit = (of_machine(), "the memory of this machine,");
             enough_memory(&args.input, &estimate(cloud.points.len()), limit)?;
+            let options = Options {
+                outliers: usual_outliers(&cloud),
+                ..options
+            };
             let result = powercrust::reconstruct(&cloud.points, &options, context);
-            Ok(result.map_err(failed)?.medial_axis())
+            let result = result.map_err(failed)?;
+            tell_outliers(talk, &result.stats.outliers);
+            Ok(result.medial_axis())
         }
     }
 }

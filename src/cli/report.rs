@@ -172,6 +172,7 @@ impl Report {
         summary["ok"] = json!(true);
         summary["options"] = json!(plan.options);
         summary["samples"] = json!(result.stats.samples);
+        summary["outliers"] = json!(result.stats.outliers);
         summary["noise"] = json!(result.stats.noise);
         summary["duplicates"] = json!(result.stats.duplicates);
         Ok(Report {

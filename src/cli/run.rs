@@ -6,11 +6,17 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
+use powercrust::io::{
+    self as format, Attribute, AttributeValues, Cloud, CloudFormat, MeshAttributes, MeshFormat,
+    ReadError, WriteError,
+};
 use powercrust::memory::{estimate, of_machine, Estimate};
-use powercrust::noise::NoiseReport;
+use powercrust::mesh::PolygonMesh;
+use powercrust::noise::{NoiseReport, OutlierReport, Stray};
 use powercrust::tetra::Complex;
-use powercrust::{Bounds, Context, Error, Options, Point, Reconstruction, SampleError};
+use powercrust::{
+    Bounds, Context, Error, Options, OutlierOption, Point, Reconstruction, SampleError,
+};
 use serde_json::json;
 
 use super::fail::{name, reason, Code, Failure};
@@ -47,6 +53,10 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         progress: &bar,
     };
     let options = Options {
+        outliers: match plan.outliers_told {
+            true => plan.options.outliers,
+            false => usual_outliers(&cloud),
+        },
         single: plan.options.single || holds_single(plan, &cloud.points),
         ..plan.options.clone()
     };
@@ -78,10 +88,11 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
             ),
         );
     }
+    tell_outliers(plan.talk, &result.stats.outliers);
     tell_noise(plan, &result.stats.noise);
 
     report.verdict(plan)?;
-    write_results(plan, &result, &product, &report)?;
+    write_results(plan, &result, &product, &report, &cloud)?;
     report.admit(plan, result.stats.crossings_left)?;
     report.tell(plan, start);
     Ok(ExitCode::SUCCESS)
@@ -116,6 +127,31 @@ pub fn read(plan: &Plan) -> Result<Cloud, Failure> {
         format_args!("options {}", json!(plan.options)),
     );
     Ok(cloud)
+}
+
+/// What is done about outliers unless the user says: the vertices of a mesh
+/// lie on its surface.
+pub fn usual_outliers(cloud: &Cloud) -> OutlierOption {
+    match cloud.report.faces_ignored {
+        Some(faces) if faces > 0 => OutlierOption::Keep,
+        _ => OutlierOption::Auto,
+    }
+}
+
+/// Says that samples were left out.
+pub fn tell_outliers(talk: Talk, found: &OutlierReport) {
+    if found.left_out > 0 {
+        talk.at(
+            Talk::Plain,
+            format_args!(
+                "note: {} left out as outliers, {} floating in {} and {} beside the surface; --outliers keep keeps them",
+                counted(found.left_out, "sample", "samples"),
+                found.floating,
+                counted(found.groups, "group", "groups"),
+                found.beside
+            ),
+        );
+    }
 }
 
 /// Says that samples were moved, and why or why not.
@@ -341,6 +377,7 @@ fn write_results(
     result: &Reconstruction,
     product: &Product,
     report: &Report,
+    cloud: &Cloud,
 ) -> Result<(), Failure> {
     let mut staged: Vec<Staged> = Vec::new();
     if let Some(out) = &plan.mesh {
@@ -366,11 +403,41 @@ fn write_results(
             format::write_balls(&mut w, &result.balls, &plan.write)
         })?);
     }
+    if let Some(out) = &plan.outliers {
+        let (points, reasons) = outliers(result, cloud);
+        let indices: Vec<i32> = result.outliers.iter().map(|o| o.0 as i32).collect();
+        let at = |name, values| Attribute { name, values };
+        let values = MeshAttributes {
+            vertices: vec![
+                at("point", AttributeValues::Int(&indices)),
+                at("reason", AttributeValues::Byte(&reasons)),
+            ],
+            ..MeshAttributes::default()
+        };
+        staged.push(stage(&out.target, &out.path, |mut w| {
+            format::write_mesh(&mut w, MeshFormat::Ply, &points, &values, &plan.write)
+        })?);
+    }
     if let Some(out) = &plan.stats {
         let text = format!("{:#}\n", report.stats);
         staged.push(out.target.stage(|w| w.write_all(text.as_bytes()))?);
     }
     staged.into_iter().try_for_each(Staged::publish)
+}
+
+/// The samples left out, as a mesh without faces, and why each was.
+fn outliers(result: &Reconstruction, cloud: &Cloud) -> (PolygonMesh, Vec<u8>) {
+    let places = result.outliers.iter().map(|o| cloud.points[o.0 as usize]);
+    let points = PolygonMesh {
+        vertices: places.collect(),
+        ..PolygonMesh::default()
+    };
+    let reason = |why: Stray| match why {
+        Stray::Floating => 0,
+        Stray::Beside => 1,
+    };
+    let reasons = result.outliers.iter().map(|o| reason(o.1));
+    (points, reasons.collect())
 }
 
 /// Stages one file; what is no error of the disk is one of ours or of the

@@ -21,7 +21,9 @@ use super::formats::{axis_format, dotted};
 use super::output::Target;
 use super::plan::{check_input, identity, out, out_of_range, Out};
 use super::report::in_numbers;
-use super::run::{enough_memory, misread, read_bytes, stage, unsolved};
+use super::run::{
+    enough_memory, misread, read_bytes, stage, tell_outliers, unsolved, usual_outliers,
+};
 use super::show::{counted, Bar, Talk};
 use super::simplify_args::{SimplifyMat, WhichSide, DELTA_OF_EPS, EPS_PERCENT};
 use super::stop;
@@ -261,8 +263,13 @@ fn balls(
             }
             let limit = (of_machine(), "the memory of this machine,");
             enough_memory(&args.input, &estimate(cloud.points.len()), limit)?;
+            let options = Options {
+                outliers: usual_outliers(&cloud),
+                ..options.clone()
+            };
             let result =
-                powercrust::reconstruct(&cloud.points, options, context).map_err(failed)?;
+                powercrust::reconstruct(&cloud.points, &options, context).map_err(failed)?;
+            tell_outliers(talk, &result.stats.outliers);
             Ok((LabelledBalls::of(result, &cloud.points), side))
         }
     }

@@ -4,7 +4,7 @@
 use powercrust::holes::{HoleSize, GROWN};
 use powercrust::io::MeshFormat;
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::NoiseOption;
+use powercrust::{NoiseOption, OutlierOption};
 
 /// The names of `--attributes` that are not columns of the input.
 pub const OWN: [&str; 8] = [
@@ -244,6 +244,15 @@ pub fn noise(text: &str) -> Result<NoiseOption, String> {
             Ok(scale) if scale > 0.0 && scale.is_finite() => Ok(NoiseOption::Scale(scale)),
             _ => Err("expected auto, off or a length above 0".to_owned()),
         },
+    }
+}
+
+/// Reads `auto` or `keep`.
+pub fn outliers(text: &str) -> Result<OutlierOption, String> {
+    match text {
+        "auto" => Ok(OutlierOption::Auto),
+        "keep" => Ok(OutlierOption::Keep),
+        _ => Err("expected auto or keep".to_owned()),
     }
 }
 

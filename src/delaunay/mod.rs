@@ -12,13 +12,13 @@ mod voronoi;
 
 pub use check::{check, Finding};
 pub(crate) use samples::times_power;
-pub use samples::{samples, Lattice, Samples};
+pub use samples::{samples, Lattice, Samples, NO_SAMPLE};
 pub use voronoi::{circumcentre, rounded_circumcentre, Centre};
 
-use crate::context::{Context, Stage};
+use crate::context::{Cancelled, Context, Portion, Stage};
 use crate::error::Error;
 use crate::predicates::{Counts, Site};
-use crate::tetra::{triangulate, Complex, InSphere};
+use crate::tetra::{triangulate, Complex, Edges, InSphere};
 
 /// The Delaunay triangulation of the samples and the frame.
 #[derive(Clone, Debug)]
@@ -68,6 +68,21 @@ pub fn delaunay(samples: &Samples, context: &Context) -> Result<Delaunay, Error>
         samples: count as usize,
         counts: built.counts,
     })
+}
+
+impl Delaunay {
+    /// The edges among the samples.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn edges(&self, context: &Context) -> Result<Edges, Cancelled> {
+        let progress = Portion {
+            context,
+            stage: Stage::Delaunay,
+            percent: [99, 100],
+        };
+        Edges::of(&self.complex, self.samples, &progress)
+    }
 }
 
 /// The corners of the cube `[-half, half]³` as unweighted sites.

@@ -83,6 +83,9 @@ pub(crate) fn times_power(v: f64, e: i32) -> f64 {
     v * step(e)
 }
 
+/// The sample of an input point that was left out.
+pub const NO_SAMPLE: u32 = u32::MAX;
+
 /// The samples: distinct points in spatial order.
 #[derive(Clone, Debug)]
 pub struct Samples {
@@ -96,7 +99,7 @@ pub struct Samples {
     pub source: Vec<u32>,
     /// How many input points it stands for.
     pub multiplicity: Vec<u32>,
-    /// The sample of each input point.
+    /// The sample of each input point, [`NO_SAMPLE`] where it was left out.
     pub of_input: Vec<u32>,
     /// The lattice.
     pub lattice: Lattice,
@@ -115,16 +118,45 @@ impl Samples {
     pub fn moved(&self, points: &[Point], box_factor: f64) -> Result<Samples, SampleError> {
         let mut moved = samples(points, box_factor)?;
         moved.of_input = (self.of_input.iter())
-            .map(|&s| moved.of_input[s as usize])
+            .map(|&s| moved.of_input.get(s as usize).copied().unwrap_or(NO_SAMPLE))
             .collect();
         for s in &mut moved.source {
             *s = self.source[*s as usize];
         }
         moved.multiplicity = vec![0; moved.len()];
-        for &s in &moved.of_input {
+        for &s in moved.of_input.iter().filter(|&&s| s != NO_SAMPLE) {
             moved.multiplicity[s as usize] += 1;
         }
         Ok(moved)
+    }
+
+    /// The samples without some, of which `keep` is false. Input points that
+    /// these stood for have [`NO_SAMPLE`].
+    ///
+    /// # Errors
+    /// [`SampleError`], as [`samples`].
+    pub fn without(&self, keep: &[bool], box_factor: f64) -> Result<Samples, SampleError> {
+        let kept: Vec<u32> = (0..self.len() as u32)
+            .filter(|&s| keep[s as usize])
+            .collect();
+        let points: Vec<Point> = kept.iter().map(|&s| self.points[s as usize]).collect();
+        let mut left = samples(&points, box_factor)?;
+        let mut now = vec![NO_SAMPLE; self.len()];
+        for (&s, &id) in kept.iter().zip(&left.of_input) {
+            now[s as usize] = id;
+        }
+        let of_input = self.of_input.iter();
+        left.of_input = of_input
+            .map(|&s| now.get(s as usize).copied().unwrap_or(NO_SAMPLE))
+            .collect();
+        for s in &mut left.source {
+            *s = self.source[kept[*s as usize] as usize];
+        }
+        left.multiplicity = vec![0; left.len()];
+        for &s in left.of_input.iter().filter(|&&s| s != NO_SAMPLE) {
+            left.multiplicity[s as usize] += 1;
+        }
+        Ok(left)
     }
 
     /// Whether there are no samples (never, once made).

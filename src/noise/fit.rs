@@ -110,7 +110,7 @@ impl Fit {
 }
 
 /// The principal axes, that of the least spread last.
-fn principal_axes(offsets: &[Point], weights: &[f64], reach: f64) -> Option<[Point; 3]> {
+pub(super) fn principal_axes(offsets: &[Point], weights: &[f64], reach: f64) -> Option<[Point; 3]> {
     let total: f64 = weights.iter().sum();
     let mut mean = [0.0; 3];
     for (&offset, &w) in offsets.iter().zip(weights) {

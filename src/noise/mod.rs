@@ -18,15 +18,19 @@
 //!    neighbours, follows from noise over spacing; near edges and in thin parts the fit
 //!    grows from a small one and leaves out what lies off it.
 //!
+//! Samples that lie on no surface at all are told apart before (`outliers/`).
+//!
 //! `docs/noise.md` has what was measured.
 
 mod fit;
 mod level;
 mod local;
 mod near;
+mod outliers;
 mod project;
 
 pub use level::Level;
+pub use outliers::{outliers, OutlierReport, Stray};
 
 use crate::context::{Cancelled, Context, Stage};
 use crate::delaunay::Samples;

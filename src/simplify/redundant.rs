@@ -20,7 +20,7 @@
 use rayon::prelude::*;
 
 use crate::context::{Cancelled, Context, Portion, Stage};
-use crate::delaunay::{Delaunay, Samples};
+use crate::delaunay::Samples;
 use crate::geom::vec3::{dist_sq, dot, norm, sub};
 use crate::geom::Point;
 use crate::poles::{Balls, Poles, NO_POLE};
@@ -46,13 +46,14 @@ use crate::tetra::Edges;
 /// let delaunay = delaunay::delaunay(&samples, &cx)?;
 /// let all = poles::poles(&samples, &delaunay, &poles::PoleOptions::default(), &cx)?;
 /// let before = all.balls.len();
-/// let (few, _) = merge_redundant(&samples, &delaunay, all, 0.5, &cx)?;
+/// let graph = delaunay.edges(&cx)?;
+/// let (few, _) = merge_redundant(&samples, &graph, all, 0.5, &cx)?;
 /// assert!(few.balls.len() * 5 < before * 4, "{} of {before}", few.balls.len());
 /// # Ok::<(), powercrust::Error>(())
 /// ```
 pub fn merge_redundant(
     samples: &Samples,
-    delaunay: &Delaunay,
+    graph: &Edges,
     poles: Poles,
     share: f64,
     context: &Context,
@@ -62,20 +63,18 @@ pub fn merge_redundant(
         stage: Stage::Poles,
         percent,
     };
-    let graph = Edges::of(&delaunay.complex, samples.len(), &part([50, 65]))?;
-    let spacing = spacing(samples, &graph);
+    let spacing = spacing(samples, graph);
     if share <= 0.0 {
         return Ok((poles, spacing));
     }
     let cover = Cover {
         samples,
         poles: &poles,
-        graph: &graph,
+        graph,
         spacing: &spacing,
         share,
     };
-    let survivors = cover.greedy(&part([65, 100]))?;
-    drop(graph);
+    let survivors = cover.greedy(&part([50, 100]))?;
     Ok((renumber(poles, &survivors), spacing))
 }
 

@@ -516,3 +516,33 @@ fn scans_of_this_repository() {
         .says("note: 57 duplicate points merged")
         .says("3,280 samples");
 }
+
+/// Two strays far from a torus: left out, said and listed; kept on request.
+#[test]
+fn outliers_are_reported() {
+    let place = Place::new();
+    let stray = "9 9 0.25\n-9 0 3\n";
+    place.put("wild.xyz", [torus(600), stray.into()].concat());
+    let ran =
+        place.run("wild.xyz -o crust.ply --report-outliers strays.ply --ascii --stats s.json");
+    ran.code(DONE).says("2 samples left out as outliers");
+    let strays = String::from_utf8(place.get("strays.ply")).unwrap();
+    assert!(strays.contains("element vertex 2"), "{strays}");
+    assert!(
+        strays.contains("\n9 9 0.25 600 0\n-9 0 3 601 0\n"),
+        "{strays}"
+    );
+    let stats: serde_json::Value = serde_json::from_slice(&place.get("s.json")).unwrap();
+    assert_eq!(stats["stats"]["outliers"]["left_out"], 2);
+    assert_eq!(stats["stats"]["outliers"]["groups"], 2);
+    assert_eq!(stats["mesh"]["components"], 1);
+
+    place
+        .run("wild.xyz -o crust.ply --outliers keep --stats s.json")
+        .code(DONE);
+    let stats: serde_json::Value = serde_json::from_slice(&place.get("s.json")).unwrap();
+    assert_eq!(stats["stats"]["outliers"]["left_out"], 0);
+    place
+        .run("wild.xyz -o crust.ply --outliers all")
+        .code(USAGE);
+}

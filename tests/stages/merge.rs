@@ -25,7 +25,14 @@ fn clouds() -> Vec<(&'static str, Vec<Point>)> {
 /// Merged by no share at all.
 fn unmerged(run: &Run) -> (Poles, Vec<f64>) {
     let (poles, context) = (run.poles.clone(), Context::default());
-    merge_redundant(&run.samples, &run.delaunay, poles, 0.0, &context).unwrap()
+    merge_redundant(
+        &run.samples,
+        &run.delaunay.edges(&Context::default()).unwrap(),
+        poles,
+        0.0,
+        &context,
+    )
+    .unwrap()
 }
 
 #[test]

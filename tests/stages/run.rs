@@ -28,8 +28,14 @@ impl Run {
         let samples = samples(points, 5.0).unwrap();
         let delaunay = delaunay(&samples, &context).unwrap();
         let poles = poles(&samples, &delaunay, &PoleOptions::default(), &context).unwrap();
-        let (poles, spacing) =
-            merge_redundant(&samples, &delaunay, poles, merge, &context).unwrap();
+        let (poles, spacing) = merge_redundant(
+            &samples,
+            &delaunay.edges(&context).unwrap(),
+            poles,
+            merge,
+            &context,
+        )
+        .unwrap();
         let step = poles.balls.lattice.step();
         let power = power_diagram(&poles.balls.sites, step, &context).unwrap();
         let balls = poles.balls.on_lattice();

@@ -1,0 +1,173 @@
+//! Groups of samples that hang together with no surface.
+
+use rayon::prelude::*;
+
+use super::plane::Plane;
+use super::{Cloud, Stray};
+
+/// Edges longer than this many spacings, at either end, join nothing.
+const REACH: f64 = 2.0;
+
+/// The spacing grows by no more than this share of the way.
+const GROWTH: f64 = 0.2;
+
+/// Rounds in which it is held to that.
+const ROUNDS: usize = 3;
+
+/// The spacing at a sample: the length of so manieth shortest of its edges.
+const RANK: usize = 6;
+
+/// Groups that hold at least this share of the cloud are surface.
+const SURFACE: usize = 20;
+
+/// Groups of so many samples at most are too small to be a part.
+const SMALL: usize = 12;
+
+/// What neighbours are off their plane, over their spacing, where they fill space:
+/// about 0.45 where they are strewn at random.
+const SHEET: f64 = 0.35;
+
+/// Members of a group looked at.
+const LOOKED_AT: usize = 40;
+
+/// The samples that float, and in how many groups; `None` if there are none.
+pub(super) fn floating(cloud: &Cloud) -> Option<(Vec<Option<Stray>>, usize)> {
+    let count = cloud.len() as u32;
+    let raw: Vec<f64> = (0..count)
+        .into_par_iter()
+        .map(|s| cloud.shortest(s, RANK).last().map_or(0.0, |n| n.0.sqrt()))
+        .collect();
+    let mut spacing = raw.clone();
+    for _ in 0..ROUNDS {
+        spacing = (0..count)
+            .into_par_iter()
+            .map(|s| {
+                let bound = |v: &u32| spacing[*v as usize] + GROWTH * cloud.dist_sq(s, *v).sqrt();
+                let bounds = cloud.graph.at(s).iter().map(bound);
+                bounds.fold(spacing[s as usize], f64::min)
+            })
+            .collect();
+    }
+
+    let mut groups = Groups::of(count);
+    for s in 0..count {
+        for &v in cloud.graph.at(s).iter().filter(|&&v| v > s) {
+            let reach = REACH * spacing[s as usize].min(spacing[v as usize]);
+            if cloud.dist_sq(s, v) <= reach * reach {
+                groups.join(s, v);
+            }
+        }
+    }
+    let most = SMALL.max(cloud.len() / SURFACE);
+    let root: Vec<u32> = (0..count).map(|s| groups.root(s)).collect();
+    let surface = |s: u32| groups.size[root[s as usize] as usize] as usize > most;
+    let mut others: Vec<(u32, u32)> = (0..count)
+        .filter(|&s| !surface(s))
+        .map(|s| (root[s as usize], s))
+        .collect();
+    if others.is_empty() || others.len() == cloud.len() {
+        return None;
+    }
+    others.sort_unstable();
+
+    let mut strays = vec![None; cloud.len()];
+    let mut found = 0;
+    for group in others.chunk_by(|a, b| a.0 == b.0) {
+        let members: Vec<u32> = group.iter().map(|m| m.1).collect();
+        if members.len() > SMALL && !sparse(cloud, &members, &raw, &spacing, &surface) {
+            continue;
+        }
+        found += 1;
+        for m in members {
+            strays[m as usize] = Some(Stray::Floating);
+        }
+    }
+    (found > 0).then_some((strays, found))
+}
+
+/// Whether a group is sparse beside the surface next to it, and no sheet.
+fn sparse(
+    cloud: &Cloud,
+    members: &[u32],
+    raw: &[f64],
+    spacing: &[f64],
+    surface: &dyn Fn(u32) -> bool,
+) -> bool {
+    let edges = (members.iter()).flat_map(|&m| cloud.graph.at(m).iter().map(move |&v| (m, v)));
+    let next = edges
+        .filter(|&(_, v)| surface(v))
+        .min_by(|a, b| {
+            let [x, y] = [a, b].map(|e| cloud.dist_sq(e.0, e.1));
+            x.total_cmp(&y).then(a.1.cmp(&b.1))
+        })
+        .map(|e| spacing[e.1 as usize]);
+    let Some(next) = next else {
+        return false;
+    };
+    let mut own: Vec<f64> = members.iter().map(|&m| raw[m as usize]).collect();
+    if median(&mut own) <= REACH * next {
+        return false;
+    }
+    let step = members.len().div_ceil(LOOKED_AT);
+    let mut off: Vec<f64> = members
+        .iter()
+        .step_by(step)
+        .map(|&m| roughness(cloud, m))
+        .collect();
+    median(&mut off) > SHEET
+}
+
+/// How far the twelve samples around one are off a plane, root mean square,
+/// over their spacing.
+fn roughness(cloud: &Cloud, s: u32) -> f64 {
+    let around = cloud.around(s, 12);
+    let Some(far) = around.last() else {
+        return 0.0;
+    };
+    let mut places = vec![cloud.places[s as usize]];
+    places.extend(around.iter().map(|n| cloud.places[n.1 as usize]));
+    let spacing = (far.0 * std::f64::consts::PI / around.len() as f64).sqrt();
+    Plane::through(&places).map_or(0.0, |plane| plane.missed / spacing)
+}
+
+/// The median; reorders.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    let at = values.len() / 2;
+    match values.is_empty() {
+        true => 0.0,
+        false => *values.select_nth_unstable_by(at, f64::total_cmp).1,
+    }
+}
+
+/// Disjoint sets of samples; the root of one is its smallest member.
+struct Groups {
+    parent: Vec<u32>,
+    size: Vec<u32>,
+}
+
+impl Groups {
+    fn of(count: u32) -> Groups {
+        Groups {
+            parent: (0..count).collect(),
+            size: vec![1; count as usize],
+        }
+    }
+
+    fn root(&mut self, mut s: u32) -> u32 {
+        while self.parent[s as usize] != s {
+            let up = self.parent[self.parent[s as usize] as usize];
+            self.parent[s as usize] = up;
+            s = up;
+        }
+        s
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        if a != b {
+            let (low, high) = (a.min(b), a.max(b));
+            self.parent[high as usize] = low;
+            self.size[low as usize] += self.size[high as usize];
+        }
+    }
+}

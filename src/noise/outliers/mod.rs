@@ -1,0 +1,206 @@
+//! Outliers: samples that lie on no surface. A step beyond the paper, which
+//! takes every sample for a point of the surface.
+//!
+//! Scanners see dust, reflections and the edge between two things at once.
+//! Each such sample makes a spike or a shell of its own. They are recognised by
+//! what tells a stray from a surface of any spacing:
+//!
+//! 1. **Floating** (`floating.rs`). Samples are joined along Delaunay edges no
+//!    longer than twice the spacing at either end, where the spacing must not grow
+//!    faster than a fifth of the way. What hangs together so with a
+//!    twentieth of the cloud is surface. Other groups of at most twelve samples are
+//!    outliers, larger ones only if they are sparse beside the surface
+//!    next to them and fill space instead of lying on a sheet: small parts and
+//!    coarsely sampled ones stay. Since the Delaunay edges hold the shortest
+//!    tree through all samples, no pair that counts is missed.
+//! 2. **Beside the surface** (`beside.rs`). If there were some, samples are looked for that
+//!    stand off the plane of their neighbours, far more than those do and by more
+//!    than the spacing. Without floating ones nobody would be there.
+//!
+//! What is left may show more, so this is done again, at most four times.
+//! Clean clouds pay for one look along the edges. `docs/noise.md` has what was
+//! measured.
+
+mod beside;
+mod floating;
+mod plane;
+
+use crate::delaunay::Samples;
+use crate::geom::vec3::dist_sq;
+use crate::geom::Point;
+use crate::tetra::Edges;
+
+/// Clouds smaller than this have no outliers: each sample may matter.
+const FEWEST: usize = 200;
+
+/// The share of the samples that must float before those beside the surface
+/// are looked for.
+const MANY: f64 = 0.002;
+
+/// Why a sample was left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stray {
+    /// Alone or in a small or sparse group, away from every surface.
+    Floating,
+    /// Near a surface, but off it by far more than its neighbours.
+    Beside,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct OutlierReport {
+    /// Samples left out.
+    pub left_out: usize,
+    /// Those of them that float.
+    pub floating: usize,
+    /// Those beside the surface.
+    pub beside: usize,
+    /// Groups that float, samples alone included.
+    pub groups: usize,
+}
+
+/// Looks for outliers; nothing where every sample belongs to a surface. For each
+/// sample why it should be left out. `graph` has the Delaunay edges; the report counts what was found
+/// in earlier calls too.
+pub fn outliers(
+    samples: &Samples,
+    graph: &Edges,
+    report: &mut OutlierReport,
+) -> Option<Vec<Option<Stray>>> {
+    let count = samples.len();
+    if count < FEWEST {
+        return None;
+    }
+    let places: Vec<Point> = (samples.sites.iter()).map(|s| [s[0], s[1], s[2]]).collect();
+    let cloud = Cloud {
+        places: &places,
+        graph,
+    };
+    let (mut strays, groups) = floating::floating(&cloud)?;
+    let floating = strays.iter().flatten().count();
+    // What is left must bound a solid.
+    if count - floating < FEWEST {
+        return None;
+    }
+    report.floating += floating;
+    report.groups += groups;
+    let seen = report.left_out + floating;
+    if seen as f64 >= MANY * count as f64 {
+        report.beside += beside::beside(&cloud, &mut strays);
+    }
+    report.left_out = report.floating + report.beside;
+    Some(strays)
+}
+
+/// Samples and the Delaunay edges among them.
+struct Cloud<'a> {
+    /// In steps of the lattice.
+    places: &'a [Point],
+    graph: &'a Edges,
+}
+
+impl Cloud<'_> {
+    fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// The squared distance of two samples.
+    fn dist_sq(&self, a: u32, b: u32) -> f64 {
+        dist_sq(self.places[a as usize], self.places[b as usize])
+    }
+
+    /// The ends of the shortest edges at a sample, nearest first.
+    fn shortest(&self, s: u32, most: usize) -> Vec<(f64, u32)> {
+        let edges = self.graph.at(s).iter().map(|&v| (self.dist_sq(s, v), v));
+        nearest(edges.collect(), most)
+    }
+
+    /// Samples near one, itself left out: of those two edges away the nearest.
+    fn around(&self, s: u32, most: usize) -> Vec<(f64, u32)> {
+        const EACH: usize = 8;
+        let first = self.shortest(s, EACH);
+        let mut all: Vec<u32> = first.iter().map(|n| n.1).collect();
+        for n in &first {
+            all.extend(self.shortest(n.1, EACH).iter().map(|n| n.1));
+        }
+        all.sort_unstable();
+        all.dedup();
+        let others = all.into_iter().filter(|&v| v != s);
+        nearest(others.map(|v| (self.dist_sq(s, v), v)).collect(), most)
+    }
+}
+
+/// The nearest of some samples, nearest first.
+fn nearest(mut found: Vec<(f64, u32)>, most: usize) -> Vec<(f64, u32)> {
+    found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    found.truncate(most);
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::context::{Context, Portion, Stage};
+    use crate::delaunay::{delaunay, samples};
+
+    fn look(points: &[Point]) -> (Vec<Option<Stray>>, OutlierReport) {
+        let context = Context::default();
+        let samples = samples(points, 5.0).unwrap();
+        let delaunay = delaunay(&samples, &context).unwrap();
+        let progress = Portion {
+            context: &context,
+            stage: Stage::Delaunay,
+            percent: [0, 100],
+        };
+        let graph = Edges::of(&delaunay.complex, samples.len(), &progress).unwrap();
+        let mut report = OutlierReport::default();
+        let found = outliers(&samples, &graph, &mut report);
+        let found = found.unwrap_or(vec![None; samples.len()]);
+        let of_point = samples.of_input.iter().map(|&s| found[s as usize]);
+        (of_point.collect(), report)
+    }
+
+    fn ball(count: u32, radius: f64, centre: f64) -> Vec<Point> {
+        let golden = |k: u32| {
+            let z = (f64::from(k) + 0.5) * 2.0 / f64::from(count) - 1.0;
+            let (r, a) = ((1.0 - z * z).sqrt(), f64::from(k) * 2.399_963_229_728_653);
+            [r * a.cos(), r * a.sin(), z].map(|x| x * radius)
+        };
+        let moved = |p: Point| [p[0] + centre, p[1], p[2]];
+        (0..count).map(golden).map(moved).collect()
+    }
+
+    #[test]
+    fn a_clean_sphere_has_none() {
+        let (found, report) = look(&ball(2000, 1.0, 0.0));
+        assert!(found.iter().all(Option::is_none));
+        assert_eq!(report, OutlierReport::default());
+    }
+
+    #[test]
+    fn strays_are_found_alone_in_groups_and_beside_the_surface() {
+        let mut points = ball(2000, 1.0, 0.0);
+        // Alone, outside and in the middle; a group; and one 3 spacings off.
+        points.extend([[1.5, 0.3, 0.2], [-1.4, -0.8, 0.6], [0.1, 0.0, 0.0]]);
+        points.extend([[0.0, 1.6, 0.0], [0.01, 1.6, 0.0], [0.0, 1.6, 0.02]]);
+        points.push([0.0, 0.0, 1.09]);
+        let (found, report) = look(&points);
+        assert!(found[..2000].iter().all(Option::is_none));
+        assert!(found[2000..2006]
+            .iter()
+            .all(|&f| f == Some(Stray::Floating)));
+        assert_eq!(found[2006], Some(Stray::Beside));
+        assert_eq!((report.floating, report.groups, report.beside), (6, 4, 1));
+    }
+
+    #[test]
+    fn small_and_coarse_parts_are_no_outliers() {
+        // A twentieth as many samples on a ball four times as far apart.
+        let mut points = ball(4000, 1.0, 0.0);
+        points.extend(ball(60, 0.7, 2.5));
+        points.extend(ball(40, 0.1, -1.5));
+        let (found, _) = look(&points);
+        assert!(found.iter().all(Option::is_none));
+    }
+}

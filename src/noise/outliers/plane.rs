@@ -1,0 +1,43 @@
+//! The plane through some samples by least squares.
+
+use crate::geom::vec3::{add, dist_sq, dot, scale, sub};
+use crate::geom::Point;
+use crate::noise::fit::principal_axes;
+
+/// A plane with its unit normal.
+#[derive(Clone, Copy)]
+pub(super) struct Plane {
+    middle: Point,
+    normal: Point,
+    /// How far the samples are off it, root mean square.
+    pub missed: f64,
+}
+
+impl Plane {
+    /// `None` where the samples span none.
+    pub fn through(places: &[Point]) -> Option<Plane> {
+        let first = *places.first()?;
+        let share = 1.0 / places.len() as f64;
+        let offsets: Vec<Point> = places.iter().map(|&p| sub(p, first)).collect();
+        let reach = places
+            .iter()
+            .map(|&p| dist_sq(p, first))
+            .fold(0.0, f64::max);
+        let sum = offsets.iter().fold([0.0; 3], |sum, &o| add(sum, o));
+        let ones = vec![1.0; places.len()];
+        let [.., normal] = principal_axes(&offsets, &ones, reach.sqrt())?;
+        let mut plane = Plane {
+            middle: add(first, scale(sum, share)),
+            normal,
+            missed: 0.0,
+        };
+        let squares: f64 = places.iter().map(|&p| plane.height(p).powi(2)).sum();
+        plane.missed = (squares * share).sqrt();
+        Some(plane)
+    }
+
+    /// How far above the plane a place is.
+    pub fn height(&self, place: Point) -> f64 {
+        dot(sub(place, self.middle), self.normal)
+    }
+}
