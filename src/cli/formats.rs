@@ -91,9 +91,17 @@ pub fn axis_format(path: &Path, flag: &str) -> Result<AxisFormat, Failure> {
 }
 
 pub fn poles_format(path: &Path) -> Result<(), Failure> {
+    only_ply(path, "poles", "--poles writes .ply")
+}
+
+pub fn outliers_format(path: &Path) -> Result<(), Failure> {
+    only_ply(path, "outliers", "--report-outliers writes .ply")
+}
+
+fn only_ply(path: &Path, what: &str, hint: &str) -> Result<(), Failure> {
     match extension(path) {
         Some(extension) if extension.eq_ignore_ascii_case("ply") => Ok(()),
-        _ => Err(unknown_extension(path, "poles").hint("--poles writes .ply")),
+        _ => Err(unknown_extension(path, what).hint(hint)),
     }
 }
 

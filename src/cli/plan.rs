@@ -13,7 +13,9 @@ use powercrust::{Error, Faces, Options};
 
 use super::args::Reconstruct;
 use super::fail::{name, reason, Failure};
-use super::formats::{axis_format, extension, input_format, mesh_format, poles_format};
+use super::formats::{
+    axis_format, extension, input_format, mesh_format, outliers_format, poles_format,
+};
 use super::output::Target;
 use super::show::Talk;
 use super::wanted::{Fewer, HoleWidth, Holes, Wanted};
@@ -101,7 +103,7 @@ impl Plan {
             outer_axis: out(&args.outer_mat, |path| axis_format(path, "--outer-mat"))?,
             thin: args.thin,
             poles: out(&args.poles, poles_format)?,
-            outliers: out(&args.report_outliers, poles_format)?,
+            outliers: out(&args.report_outliers, outliers_format)?,
             stats: out(&args.stats, |_| Ok(()))?,
             ..plan
         };

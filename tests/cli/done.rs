@@ -545,4 +545,7 @@ fn outliers_are_reported() {
     place
         .run("wild.xyz -o crust.ply --outliers all")
         .code(USAGE);
+    place
+        .run("wild.xyz -o crust.ply --report-outliers strays.xyz")
+        .fails(USAGE, "strays.xyz: .xyz is no outliers format");
 }
