@@ -8,6 +8,10 @@ use super::{Cloud, Stray};
 /// Edges longer than this many spacings, at either end, join nothing.
 const REACH: f64 = 2.0;
 
+/// Where hardly a sample floats, it must be so many spacings away: among
+/// thousands strewn evenly over a surface some few stand alone.
+const FAR: f64 = 5.0;
+
 /// The spacing grows by no more than this share of the way.
 const GROWTH: f64 = 0.2;
 
@@ -70,11 +74,15 @@ pub(super) fn floating(cloud: &Cloud) -> Option<(Vec<Option<Stray>>, usize)> {
     }
     others.sort_unstable();
 
+    let few = (others.len() as f64) < super::MANY * cloud.len() as f64;
     let mut strays = vec![None; cloud.len()];
     let mut found = 0;
     for group in others.chunk_by(|a, b| a.0 == b.0) {
         let members: Vec<u32> = group.iter().map(|m| m.1).collect();
         if members.len() > SMALL && !sparse(cloud, &members, &raw, &spacing, &surface) {
+            continue;
+        }
+        if few && !is_far(cloud, &members, &root, &spacing) {
             continue;
         }
         found += 1;
@@ -83,6 +91,20 @@ pub(super) fn floating(cloud: &Cloud) -> Option<(Vec<Option<Stray>>, usize)> {
         }
     }
     (found > 0).then_some((strays, found))
+}
+
+/// Whether all edges out of a group are longer than so many spacings that no
+/// gap between samples of a surface is as wide.
+fn is_far(cloud: &Cloud, members: &[u32], root: &[u32], spacing: &[f64]) -> bool {
+    let own = root[members[0] as usize];
+    members.iter().all(|&m| {
+        let mut out = cloud
+            .graph
+            .at(m)
+            .iter()
+            .filter(|&&v| root[v as usize] != own);
+        out.all(|&v| cloud.dist_sq(m, v) > (FAR * spacing[v as usize]).powi(2))
+    })
 }
 
 /// Whether a group is sparse beside the surface next to it, and no sheet.
