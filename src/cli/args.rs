@@ -197,10 +197,12 @@ pub struct Reconstruct {
 
     /// What to do with samples that lie on no surface: auto, keep.
     ///
-    /// `auto` leaves out samples alone or in small or sparse groups away from every surface, and, where there are such, those
-    /// that stand off a surface by far more than their neighbours. How many is said, and
-    /// --report-outliers tells which. `keep` keeps every sample. By default auto, but keep
-    /// where the input is a mesh, whose vertices lie on its surface.
+    /// `auto` leaves out samples alone or in small or sparse groups away from
+    /// every surface, and, where there are such, those that stand off a surface
+    /// by far more than their neighbours. How many is said, and
+    /// --report-outliers tells which. `keep` keeps every sample. By default
+    /// auto, but keep where the input is a mesh, whose vertices lie on its
+    /// surface.
     #[arg(long, value_name = "WHAT", value_parser = wanted::outliers, help_heading = METHOD)]
     pub outliers: Option<OutlierOption>,
 
@@ -288,10 +290,11 @@ pub struct Reconstruct {
     /// Names: sample (the input point at each vertex, -1 for none), normals,
     /// colours, columns of the input; and of faces thickness, gap (how thick
     /// the solid and the space before it are), polar_radii (the sum of the
-    /// radii of the two polar balls), component (0 the largest part), hole (1 where
-    /// nothing was sampled). By default sample, hole and what the input has. Vertices that are no input points are blended from
-    /// those next to them. PLY and JSON hold all of it, OBJ, OFF and GLB
-    /// normals and colours, STL nothing.
+    /// radii of the two polar balls), component (0 the largest part), hole (1
+    /// where nothing was sampled). By default sample, hole and what the input
+    /// has. Vertices that are no input points are blended from those next to
+    /// them. PLY and JSON hold all of it, OBJ, OFF and GLB normals and colours,
+    /// STL nothing.
     #[arg(long, value_name = "LIST", value_parser = Wanted::parse, help_heading = SURFACE)]
     pub attributes: Option<Wanted>,
 
@@ -314,8 +317,8 @@ pub struct Reconstruct {
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub poles: Option<PathBuf>,
 
-    /// Write the samples left out by --outliers, as PLY, with the number of each in the
-    /// input and why: reason 0 floating, 1 beside the surface
+    /// Write the samples left out by --outliers, as PLY, with the number of
+    /// each in the input and why: reason 0 floating, 1 beside the surface.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub report_outliers: Option<PathBuf>,
 

@@ -116,18 +116,8 @@ impl Samples {
     /// # Errors
     /// [`SampleError`], as [`samples`].
     pub fn moved(&self, points: &[Point], box_factor: f64) -> Result<Samples, SampleError> {
-        let mut moved = samples(points, box_factor)?;
-        moved.of_input = (self.of_input.iter())
-            .map(|&s| moved.of_input.get(s as usize).copied().unwrap_or(NO_SAMPLE))
-            .collect();
-        for s in &mut moved.source {
-            *s = self.source[*s as usize];
-        }
-        moved.multiplicity = vec![0; moved.len()];
-        for &s in moved.of_input.iter().filter(|&&s| s != NO_SAMPLE) {
-            moved.multiplicity[s as usize] += 1;
-        }
-        Ok(moved)
+        let all: Vec<u32> = (0..self.len() as u32).collect();
+        self.with(&all, points, box_factor)
     }
 
     /// The samples without some, of which `keep` is false. Input points that
@@ -136,27 +126,32 @@ impl Samples {
     /// # Errors
     /// [`SampleError`], as [`samples`].
     pub fn without(&self, keep: &[bool], box_factor: f64) -> Result<Samples, SampleError> {
-        let kept: Vec<u32> = (0..self.len() as u32)
-            .filter(|&s| keep[s as usize])
-            .collect();
+        let all = 0..self.len() as u32;
+        let kept: Vec<u32> = all.filter(|&s| keep[s as usize]).collect();
         let points: Vec<Point> = kept.iter().map(|&s| self.points[s as usize]).collect();
-        let mut left = samples(&points, box_factor)?;
+        self.with(&kept, &points, box_factor)
+    }
+
+    /// Some of the samples at these places, with the input points they stand
+    /// for.
+    fn with(&self, some: &[u32], at: &[Point], box_factor: f64) -> Result<Samples, SampleError> {
+        let mut made = samples(at, box_factor)?;
         let mut now = vec![NO_SAMPLE; self.len()];
-        for (&s, &id) in kept.iter().zip(&left.of_input) {
+        for (&s, &id) in some.iter().zip(&made.of_input) {
             now[s as usize] = id;
         }
-        let of_input = self.of_input.iter();
-        left.of_input = of_input
+        let then = self.of_input.iter();
+        made.of_input = then
             .map(|&s| now.get(s as usize).copied().unwrap_or(NO_SAMPLE))
             .collect();
-        for s in &mut left.source {
-            *s = self.source[kept[*s as usize] as usize];
+        for s in &mut made.source {
+            *s = self.source[some[*s as usize] as usize];
         }
-        left.multiplicity = vec![0; left.len()];
-        for &s in left.of_input.iter().filter(|&&s| s != NO_SAMPLE) {
-            left.multiplicity[s as usize] += 1;
+        made.multiplicity = vec![0; made.len()];
+        for &s in made.of_input.iter().filter(|&&s| s != NO_SAMPLE) {
+            made.multiplicity[s as usize] += 1;
         }
-        Ok(left)
+        Ok(made)
     }
 
     /// Whether there are no samples (never, once made).

@@ -21,7 +21,7 @@ const ROUNDS: usize = 3;
 /// The spacing at a sample: the length of so manieth shortest of its edges.
 const RANK: usize = 6;
 
-/// Groups that hold at least this share of the cloud are surface.
+/// Groups that hold more than one in so many samples of the cloud are surface.
 const SURFACE: usize = 20;
 
 /// Groups of so many samples at most are too small to be a part.
@@ -35,7 +35,8 @@ const SHEET: f64 = 0.35;
 const LOOKED_AT: usize = 40;
 
 /// The samples that float, and in how many groups; `None` if there are none.
-pub(super) fn floating(cloud: &Cloud) -> Option<(Vec<Option<Stray>>, usize)> {
+/// So many outliers were `found_before`.
+pub(super) fn floating(cloud: &Cloud, found_before: usize) -> Option<(Vec<Option<Stray>>, usize)> {
     let count = cloud.len() as u32;
     let raw: Vec<f64> = (0..count)
         .into_par_iter()
@@ -74,7 +75,7 @@ pub(super) fn floating(cloud: &Cloud) -> Option<(Vec<Option<Stray>>, usize)> {
     }
     others.sort_unstable();
 
-    let few = (others.len() as f64) < super::MANY * cloud.len() as f64;
+    let few = ((found_before + others.len()) as f64) < super::MANY * cloud.len() as f64;
     let mut strays = vec![None; cloud.len()];
     let mut found = 0;
     for group in others.chunk_by(|a, b| a.0 == b.0) {

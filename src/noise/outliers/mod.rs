@@ -11,7 +11,8 @@
 //!    twentieth of the cloud is surface. Other groups of at most twelve samples are
 //!    outliers, larger ones only if they are sparse beside the surface
 //!    next to them and fill space instead of lying on a sheet: small parts and
-//!    coarsely sampled ones stay. Since the Delaunay edges hold the shortest
+//!    coarsely sampled ones stay. Among thousands of samples strewn evenly some few stand
+//!    alone as well: where less than one in 500 floats, only those five spacings away count. Since the Delaunay edges hold the shortest
 //!    tree through all samples, no pair that counts is missed.
 //! 2. **Beside the surface** (`beside.rs`). If there were some, samples are looked for that
 //!    stand off the plane of their neighbours, far more than those do and by more
@@ -33,8 +34,8 @@ use crate::tetra::Edges;
 /// Clouds smaller than this have no outliers: each sample may matter.
 const FEWEST: usize = 200;
 
-/// The share of the samples that must float before those beside the surface
-/// are looked for.
+/// The share of the samples that must float before lone ones close by are
+/// outliers, and those beside the surface are looked for.
 const MANY: f64 = 0.002;
 
 /// Why a sample was left out.
@@ -77,7 +78,7 @@ pub fn outliers(
         places: &places,
         graph,
     };
-    let (mut strays, groups) = floating::floating(&cloud)?;
+    let (mut strays, groups) = floating::floating(&cloud, report.left_out)?;
     let floating = strays.iter().flatten().count();
     // What is left must bound a solid.
     if count - floating < FEWEST {
