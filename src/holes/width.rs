@@ -94,14 +94,15 @@ fn smooth(values: Vec<f64>, halves: &Halves) -> Vec<f64> {
     for _ in 0..2 {
         values = (0..values.len() as u32)
             .into_par_iter()
-            .map(|v| median(&values, v, halves))
+            .map_init(Vec::new, |room, v| median(&values, v, halves, room))
             .collect();
     }
+    let mut room = Vec::new();
     loop {
         let missing = |&v: &u32| values[v as usize].is_nan();
         let found: Vec<(u32, f64)> = (0..values.len() as u32)
             .filter(missing)
-            .map(|v| (v, median(&values, v, halves)))
+            .map(|v| (v, median(&values, v, halves, &mut room)))
             .filter(|(_, value)| !value.is_nan())
             .collect();
         if found.is_empty() {
@@ -114,15 +115,19 @@ fn smooth(values: Vec<f64>, halves: &Halves) -> Vec<f64> {
 }
 
 /// The lower median of the values at a vertex and around it.
-fn median(values: &[f64], v: u32, halves: &Halves) -> f64 {
+fn median(values: &[f64], v: u32, halves: &Halves, room: &mut Vec<f64>) -> f64 {
+    room.clear();
     let near = halves.leaving(v).iter().map(|&h| halves.head(h));
-    let mut known: Vec<f64> = (near.chain([v]))
-        .map(|w| values[w as usize])
-        .filter(|x| !x.is_nan())
-        .collect();
-    if known.is_empty() {
-        return f64::NAN;
+    for w in near.chain([v]) {
+        let value = values[w as usize];
+        if !value.is_nan() {
+            // Few, so in order at once.
+            let at = room.partition_point(|&x| x < value);
+            room.insert(at, value);
+        }
     }
-    let middle = (known.len() - 1) / 2;
-    *known.select_nth_unstable_by(middle, f64::total_cmp).1
+    match room.len() {
+        0 => f64::NAN,
+        known => room[(known - 1) / 2],
+    }
 }
