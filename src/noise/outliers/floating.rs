@@ -38,21 +38,21 @@ const LOOKED_AT: usize = 40;
 /// So many outliers were `found_before`.
 pub(super) fn floating(cloud: &Cloud, found_before: usize) -> Option<(Vec<Option<Stray>>, usize)> {
     let count = cloud.len() as u32;
-    let raw: Vec<f64> = (0..count)
+    let shortest: Vec<[(f64, u32); RANK]> = (0..count)
         .into_par_iter()
-        .map(|s| cloud.shortest(s, RANK).last().map_or(0.0, |n| n.0.sqrt()))
+        .map(|s| shortest(cloud, s))
         .collect();
+    let raw: Vec<f64> = shortest.par_iter().map(|edges| edges[RANK - 1].0).collect();
     let mut spacing = raw.clone();
     for _ in 0..ROUNDS {
-        spacing = (0..count)
-            .into_par_iter()
-            .map(|s| {
-                let bound = |v: &u32| spacing[*v as usize] + GROWTH * cloud.dist_sq(s, *v).sqrt();
-                let bounds = cloud.graph.at(s).iter().map(bound);
-                bounds.fold(spacing[s as usize], f64::min)
+        spacing = (shortest.par_iter().zip(&spacing))
+            .map(|(edges, &own)| {
+                let bounds = edges.iter().map(|e| spacing[e.1 as usize] + GROWTH * e.0);
+                bounds.fold(own, f64::min)
             })
             .collect();
     }
+    drop(shortest);
 
     let mut groups = Groups::of(count);
     for s in 0..count {
@@ -83,7 +83,7 @@ pub(super) fn floating(cloud: &Cloud, found_before: usize) -> Option<(Vec<Option
         if members.len() > SMALL && !sparse(cloud, &members, &raw, &spacing, &surface) {
             continue;
         }
-        if few && !is_far(cloud, &members, &root, &spacing) {
+        if !is_away(cloud, &members, [&raw, &spacing], &surface, few) {
             continue;
         }
         found += 1;
@@ -94,18 +94,54 @@ pub(super) fn floating(cloud: &Cloud, found_before: usize) -> Option<(Vec<Option
     (found > 0).then_some((strays, found))
 }
 
-/// Whether all edges out of a group are longer than so many spacings that no
-/// gap between samples of a surface is as wide.
-fn is_far(cloud: &Cloud, members: &[u32], root: &[u32], spacing: &[f64]) -> bool {
-    let own = root[members[0] as usize];
-    members.iter().all(|&m| {
-        let mut out = cloud
-            .graph
-            .at(m)
-            .iter()
-            .filter(|&&v| root[v as usize] != own);
-        out.all(|&v| cloud.dist_sq(m, v) > (FAR * spacing[v as usize]).powi(2))
-    })
+/// The lengths and ends of the shortest edges at a sample, in order; the
+/// longest again where there are fewer.
+fn shortest(cloud: &Cloud, s: u32) -> [(f64, u32); RANK] {
+    let mut found = [(f64::INFINITY, s); RANK];
+    let mut known = 0;
+    for &v in cloud.graph.at(s) {
+        let mut edge = (cloud.dist_sq(s, v), v);
+        known += 1;
+        if edge.0 < found[RANK - 1].0 {
+            for slot in &mut found {
+                if edge.0 < slot.0 {
+                    std::mem::swap(&mut edge, slot);
+                }
+            }
+        }
+    }
+    for at in known..RANK {
+        found[at] = match known {
+            0 => (0.0, s),
+            _ => found[known - 1],
+        };
+    }
+    found.map(|(square, v)| (square.sqrt(), v))
+}
+
+/// Whether a group is away from every surface: by [`FAR`] spacings where `few` float, and where it
+/// is denser than all surface next to it, by [`REACH`] of the spacings there. Such a group
+/// hangs together with nothing, but may be a detail of a coarser surface.
+fn is_away(
+    cloud: &Cloud,
+    members: &[u32],
+    [raw, spacing]: [&[f64]; 2],
+    surface: &dyn Fn(u32) -> bool,
+    few: bool,
+) -> bool {
+    let edges = || {
+        let at = |&m: &u32| cloud.graph.at(m).iter().map(move |&v| (m, v));
+        members.iter().flat_map(at).filter(|e| surface(e.1))
+    };
+    let beyond = |reach: f64, spacing: &[f64]| {
+        edges().all(|(m, v)| cloud.dist_sq(m, v) > (reach * spacing[v as usize]).powi(2))
+    };
+    let finest = edges()
+        .map(|e| raw[e.1 as usize])
+        .fold(f64::INFINITY, f64::min);
+    let mut own: Vec<f64> = members.iter().map(|&m| raw[m as usize]).collect();
+    let dense = median(&mut own) < finest && finest.is_finite();
+    (!few || beyond(FAR, spacing)) && (!dense || beyond(REACH, raw))
 }
 
 /// Whether a group is sparse beside the surface next to it, and no sheet.

@@ -12,7 +12,9 @@
 //!    outliers, larger ones only if they are sparse beside the surface
 //!    next to them and fill space instead of lying on a sheet: small parts and
 //!    coarsely sampled ones stay. Among thousands of samples strewn evenly some few stand
-//!    alone as well: where less than one in 500 floats, only those five spacings away count. Since the Delaunay edges hold the shortest
+//!    alone as well: where less than one in 500 floats, only those five spacings away count. And a group
+//!    denser than the surface next to it must be two spacings of that away, lest it be a
+//!    detail of it. Since the Delaunay edges hold the shortest
 //!    tree through all samples, no pair that counts is missed.
 //! 2. **Beside the surface** (`beside.rs`). If there were some, samples are looked for that
 //!    stand off the plane of their neighbours, far more than those do and by more
@@ -193,6 +195,17 @@ mod tests {
             .all(|&f| f == Some(Stray::Floating)));
         assert_eq!(found[2006], Some(Stray::Beside));
         assert_eq!((report.floating, report.groups, report.beside), (6, 4, 1));
+    }
+
+    /// Twelve vertices of a detail beside a coarse surface, as in
+    /// `footbones_verts.ply`: far away by their own spacing, not by the surface's.
+    #[test]
+    fn dense_details_of_a_coarse_surface_are_no_outliers() {
+        let mut points = ball(2000, 1.0, 0.0);
+        let detail = ball(12, 0.01, 0.0).into_iter();
+        points.extend(detail.map(|p| [p[0], p[1], p[2] + 1.12]));
+        let (found, _) = look(&points);
+        assert!(found.iter().all(Option::is_none));
     }
 
     #[test]
