@@ -6,7 +6,7 @@ use powercrust::io::{
     MeshAttributes, MeshFormat, ReadOptions, WriteOptions,
 };
 use powercrust::mesh::{check, CheckOptions, PolygonMesh};
-use powercrust::{reconstruct, Context, Error, Faces, Options, Point};
+use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point};
 
 /// Names of the targets; seeds lie in folders of these names.
 #[allow(dead_code)]
@@ -141,11 +141,15 @@ fn pipeline(bytes: &[u8]) {
         .map(|p| [0, 1, 2].map(|k| f64::from(p[k] % grid) * unit + offset))
         .collect();
     let mut options = Options {
-        lambda: [None, None, Some(0.3), Some(0.9)][usize::from(choice % 4)],
+        lambda: match choice % 4 {
+            2 => LambdaOption::Value(0.3),
+            3 => LambdaOption::Value(0.9),
+            _ => LambdaOption::Auto,
+        },
         single: choice & 8 != 0 && unit > 1e-20 && unit < 1e20,
         ..Options::default()
     };
-    options.sharp = choice & 4 != 0 && options.lambda.is_some();
+    options.sharp = choice & 4 != 0 && options.lambda.is_given();
     if choice & 16 != 0 {
         options.faces = Faces::Polygons;
     }

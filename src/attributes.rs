@@ -390,6 +390,17 @@ impl Reconstruction {
             .collect()
     }
 
+    /// For each face how much its place is to be doubted: the larger of what the
+    /// evidence says against the labels of its two polar balls
+    /// ([`Reconstruction::doubt`]), in [0, 1]. 0 almost everywhere on clean samples.
+    pub fn face_doubt(&self) -> Vec<f64> {
+        let doubt = |b: u32| self.doubt.get(b as usize).copied().unwrap_or(0.0);
+        let pairs = self.crust.face_balls.iter();
+        pairs
+            .map(|pair| f64::from(doubt(pair[0]).max(doubt(pair[1]))))
+            .collect()
+    }
+
     /// For each vertex how far apart samples are there: the distance from a
     /// sample to the nearest one next to it on the surface, blended at other
     /// vertices like every number.

@@ -106,7 +106,7 @@ pub use context::{Cancelled, Context, Progress, Silent, Stage};
 pub use error::{Error, SampleError};
 pub use geom::{Ball, Bounds, Point, Side};
 pub use mesh::PolygonMesh;
-pub use options::{Faces, NoiseOption, Options, OutlierOption};
+pub use options::{Faces, LabelOption, LambdaOption, NoiseOption, Options, OutlierOption};
 pub use pipeline::{reconstruct, PolarBall, Reconstruction};
 pub use stats::Stats;
 pub use surface::{Crust, PowerShape};

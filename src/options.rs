@@ -5,11 +5,11 @@ use crate::error::Error;
 /// Options of a reconstruction.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Options {
-    /// Skinniness bound `lambda` of section 6.1, the user's estimate of r';
-    /// in (0, 1]. `None` keeps every pole.
-    pub lambda: Option<f64>,
+    /// Which poles are dropped for the shape of their cells (section 6.1).
+    pub lambda: LambdaOption,
     /// Drop both poles of a sample whose cell fails the skinniness test
-    /// (section 6.2), so that faces extend to sharp edges. Needs `lambda`.
+    /// (section 6.2), so that faces extend to sharp edges. Needs a value of
+    /// `lambda`.
     pub sharp: bool,
     /// Whether samples amid noise are moved onto the surface before anything
     /// else. With [`NoiseOption::Auto`] a cloud that is not noisy gives the
@@ -18,6 +18,8 @@ pub struct Options {
     /// Whether samples that lie on no surface are left out before anything
     /// else. A cloud without any gives the same result, to the last bit, either way.
     pub outliers: OutlierOption,
+    /// How far labels are worked on.
+    pub label: LabelOption,
     /// Angle in degrees, in (90, 180), above which two balls intersect deeply
     /// and share evidence (section 5.2).
     pub deep_angle: f64,
@@ -43,6 +45,27 @@ pub struct Options {
     pub single: bool,
 }
 
+/// The skinniness bound `lambda` of section 6.1.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LambdaOption {
+    /// Chosen sample by sample from what is known about noise; without noise
+    /// every pole is kept ([`crate::poles::Bound`]).
+    Auto,
+    /// None: every pole is kept.
+    Off,
+    /// The user's estimate of r', the distance between samples over that to the
+    /// medial axis; in (0, 1].
+    Value(f64),
+}
+
+impl LambdaOption {
+    /// Whether the user gave a value.
+    pub fn is_given(self) -> bool {
+        matches!(self, LambdaOption::Value(_))
+    }
+}
+
 /// What to take for noise.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -66,6 +89,17 @@ pub enum OutlierOption {
     Keep,
 }
 
+/// How far labels, inner or outer, are worked on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LabelOption {
+    /// As the queue of section 5.2 leaves them: a label once given stays.
+    Greedy,
+    /// Flipped where that agrees better with the evidence, and amid noise with
+    /// winding numbers.
+    Refined,
+}
+
 /// The kind of faces wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -79,10 +113,11 @@ pub enum Faces {
 impl Default for Options {
     fn default() -> Options {
         Options {
-            lambda: None,
+            lambda: LambdaOption::Auto,
             sharp: false,
             noise: NoiseOption::Auto,
             outliers: OutlierOption::Auto,
+            label: LabelOption::Refined,
             deep_angle: 113.578_178_478_201_83,
             box_factor: 5.0,
             merge: 0.5,
@@ -101,8 +136,9 @@ impl Options {
     /// [`Error::Option`] names the first option out of range.
     ///
     /// ```
-    /// use powercrust::Options;
-    /// let options = Options { lambda: Some(7.0), ..Options::default() };
+    /// use powercrust::{options::LambdaOption, Options};
+    /// let lambda = LambdaOption::Value(7.0);
+    /// let options = Options { lambda, ..Options::default() };
     /// assert_eq!(
     ///     options.validate().unwrap_err().to_string(),
     ///     "option lambda is 7: expected a number in (0, 1]"
@@ -120,11 +156,11 @@ impl Options {
                 })
             }
         };
-        if let Some(lambda) = self.lambda {
+        if let LambdaOption::Value(lambda) = self.lambda {
             let ok = lambda > 0.0 && lambda <= 1.0;
             within("lambda", lambda, ok, "a number in (0, 1]")?;
         }
-        if self.sharp && self.lambda.is_none() {
+        if self.sharp && !self.lambda.is_given() {
             within("sharp", 1.0, false, "lambda beside it")?;
         }
         if let NoiseOption::Scale(scale) = self.noise {

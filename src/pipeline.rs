@@ -9,12 +9,13 @@ use crate::delaunay::{delaunay, samples, Delaunay, Lattice, Samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{
-    energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours, MOST_UNHELD,
+    doubt, energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours,
+    MOST_UNHELD, TORN,
 };
 use crate::memory;
 use crate::noise::{outliers, treat, Stray};
-use crate::options::{Options, OutlierOption};
-use crate::poles::{poles, BallLattice, PoleOptions};
+use crate::options::{LabelOption, Options, OutlierOption};
+use crate::poles::{poles, BallLattice, Bound, DroppedPole, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
@@ -40,6 +41,9 @@ pub struct Reconstruction {
     pub crust: Crust,
     /// All polar balls of the power diagram with their labels.
     pub balls: Vec<PolarBall>,
+    /// The share of the evidence on each ball that its label goes against, in
+    /// [0, 1]: see [`mod@crate::label`].
+    pub doubt: Vec<f32>,
     /// For each sample id (the `vertex_samples` of the crust) the index of
     /// the first input point at that place.
     pub sample_source: Vec<u32>,
@@ -49,6 +53,8 @@ pub struct Reconstruction {
     /// The samples left out because they lie on no surface
     /// ([`Options::outliers`]): an input point at each, ascending, and why.
     pub outliers: Vec<(u32, Stray)>,
+    /// The poles dropped (section 6), by sample, in the units of the input.
+    pub dropped: Vec<DroppedPole>,
     /// The power diagram of the balls; its sites are in steps of the lattice
     /// of balls.
     pub power: PowerDiagram,
@@ -174,9 +180,11 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     }
 
     // Samples amid noise move onto the surface.
+    let mut noise = Vec::new();
     match treat(&samples, options.noise, context)? {
         Ok(treated) => {
             stats.noise = treated.report;
+            noise = treated.shares;
             samples = samples.moved(&treated.points, options.box_factor)?;
             clock.lap(Stage::Noise, &mut stats);
             (built, graph) = triangulated(&samples, &mut clock, &mut stats, context)?;
@@ -193,14 +201,17 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     delaunay.complex.neighbours = Vec::new();
 
     // 2. Poles; balls that say nothing new are merged (fact F6).
+    let (bound, bound_report) = Bound::choose(options.lambda, samples.len(), &noise);
+    stats.lambda = bound_report;
     let chosen = PoleOptions {
-        lambda: options.lambda,
+        bound,
         sharp: options.sharp,
     };
-    let poles = poles(&samples, &delaunay, &chosen, context)?;
-    stats.skinny_samples = poles.skinny_samples;
-    stats.poles_dropped = poles.dropped;
+    let mut poles = poles(&samples, &delaunay, &chosen, context)?;
+    stats.skinny_samples = poles.samples_short() as u32;
+    stats.poles_dropped = poles.dropped.len() as u32;
     stats.poles = poles.balls.len();
+    let dropped = in_user_units(std::mem::take(&mut poles.dropped), &samples.lattice);
     let (mut poles, spacing) = merge_redundant(&samples, &graph, poles, options.merge, context)?;
     drop(graph);
     stats.balls = poles.balls.len();
@@ -228,17 +239,23 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         deep: -options.deep_angle.to_radians().cos(),
     };
     let mut labels = label(&evidence, &neighbours, &how, context)?;
-    stats.greedy_energy = energy(&evidence, &neighbours, &labels.sides, &how);
-    stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
-    if stats.noise.treated {
+    let refined = options.label == LabelOption::Refined;
+    let greedy = refined.then(|| labels.sides.clone());
+    if refined {
+        stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
+    }
+    if refined && stats.noise.treated {
         let (of_sample, sites) = (&poles.of_sample, &delaunay.sites);
         stats.wound = wind(&evidence, of_sample, sites, &spacing, &mut labels, context)?;
     }
     stats.unreached_balls = labels.unreached;
-    stats.label_energy = match stats.flips + stats.wound.changed {
-        0 => stats.greedy_energy,
-        _ => energy(&evidence, &neighbours, &labels.sides, &how),
+    let (left, mut doubt) = doubt(&evidence, &neighbours, &labels.sides, &how);
+    stats.label_energy = left;
+    stats.greedy_energy = match greedy.filter(|_| stats.flips + stats.wound.changed > 0) {
+        Some(greedy) => energy(&evidence, &neighbours, &greedy, &how),
+        None => left,
     };
+    stats.torn_balls = doubt.iter().filter(|&&d| d >= TORN).count();
     drop((neighbours, pairs, on_lattice));
     let most = match (options.sharp, options.interpolate) {
         (_, Some(true)) => 1.0,
@@ -248,6 +265,7 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     let balls = &mut poles.balls;
     stats.held = hold(&delaunay, balls, &mut power, &mut labels, most, context)?;
     drop((delaunay, poles.of_sample));
+    doubt.resize(labels.sides.len(), 0.0);
     stats.inner_balls = labels.sides.iter().filter(|&&s| s == Side::Inner).count();
     clock.lap(Stage::Labels, &mut stats);
 
@@ -301,9 +319,11 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
     Ok(Reconstruction {
         crust,
         balls,
+        doubt,
         sample_source: samples.source,
         moved,
         outliers: left_out,
+        dropped,
         power,
         touching,
         spacing,
@@ -327,6 +347,16 @@ fn triangulated(
     let graph = built.edges(context)?;
     clock.lap(Stage::Delaunay, stats);
     Ok((built, graph))
+}
+
+/// Poles as they lie in the input.
+fn in_user_units(mut dropped: Vec<DroppedPole>, lattice: &Lattice) -> Vec<DroppedPole> {
+    for pole in &mut dropped {
+        pole.centre = lattice.to_user(pole.centre);
+        pole.radius = lattice.length_to_user(pole.radius);
+        pole.bound = lattice.length_to_user(pole.bound);
+    }
+    dropped
 }
 
 /// Whether 32-bit coordinates tell a hundred places apart across the samples.

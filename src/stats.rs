@@ -6,6 +6,7 @@ use crate::label::{Energy, Held, Wound};
 use crate::mesh::Shape;
 use crate::noise::{NoiseReport, OutlierReport};
 use crate::options::Options;
+use crate::poles::BoundReport;
 use crate::predicates::Counts;
 
 /// What one run did.
@@ -25,6 +26,8 @@ pub struct Stats {
     pub delaunay_cells: usize,
     /// Distinct polar balls chosen.
     pub poles: usize,
+    /// The skinniness bound taken.
+    pub lambda: BoundReport,
     /// Samples that failed the skinniness test.
     pub skinny_samples: u32,
     /// Poles dropped by it.
@@ -37,6 +40,8 @@ pub struct Stats {
     pub inner_balls: usize,
     /// Balls that no evidence reached.
     pub unreached_balls: u32,
+    /// Balls whose label goes against a quarter of the evidence, or more.
+    pub torn_balls: usize,
     /// Samples that were off the crust and the balls added for them.
     pub held: Held,
     /// Cells of the regular triangulation, sentinels included.
@@ -113,12 +118,14 @@ impl Stats {
             noise: NoiseReport::default(),
             delaunay_cells: 0,
             poles: 0,
+            lambda: BoundReport::default(),
             skinny_samples: 0,
             poles_dropped: 0,
             balls: 0,
             hidden_balls: 0,
             inner_balls: 0,
             unreached_balls: 0,
+            torn_balls: 0,
             held: Held::default(),
             power_cells: 0,
             power_faces: 0,

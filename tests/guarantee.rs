@@ -4,7 +4,7 @@
 //! `POWERCRUST_SEEDS=2000` runs more seeds; `POWERCRUST_SEED=17` just one.
 
 use powercrust::mesh::{check, CheckOptions, Report};
-use powercrust::{reconstruct, Context, Error, Faces, Options, Point};
+use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point};
 use rayon::prelude::*;
 
 /// splitmix64.
@@ -147,8 +147,8 @@ fn options(seed: u64) -> Options {
     let mut r = Random(!seed);
     let mut options = Options::default();
     match r.below(8) {
-        0 => options.lambda = Some(0.3),
-        1 => (options.lambda, options.sharp) = (Some(0.4), true),
+        0 => options.lambda = LambdaOption::Value(0.3),
+        1 => (options.lambda, options.sharp) = (LambdaOption::Value(0.4), true),
         2 => options.single = true,
         3 => options.flatness = 0.0,
         4 => options.faces = Faces::Polygons,

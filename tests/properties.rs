@@ -8,11 +8,11 @@
 use powercrust::delaunay::{self, delaunay, samples};
 use powercrust::label::{self, label, opposites, refine, Evidence, LabelOptions, Neighbours};
 use powercrust::mesh::{check, CheckOptions};
-use powercrust::poles::{self, poles, PoleOptions};
+use powercrust::poles::{self, poles, Bound, PoleOptions};
 use powercrust::power::{self, power_diagram};
 use powercrust::simplify::merge_redundant;
 use powercrust::surface::{clean, power_shape, raw_crust, triangulate, CleanOptions, Placement};
-use powercrust::{reconstruct, Context, Error, Faces, Options, Point, Side};
+use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point, Side};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -25,13 +25,17 @@ fn setting(name: &str) -> Option<u32> {
 
 /// Options that change the surface, the default most often.
 fn options() -> impl Strategy<Value = Options> {
-    let lambda = prop_oneof![3 => Just(None), 1 => Just(Some(0.2)), 1 => Just(Some(0.5))];
+    let lambda = prop_oneof![
+        3 => Just(LambdaOption::Auto),
+        1 => Just(LambdaOption::Value(0.2)),
+        1 => Just(LambdaOption::Value(0.5)),
+    ];
     let flags = (any::<bool>(), any::<bool>(), any::<bool>(), any::<bool>());
     let shares = (prop_oneof![3 => Just(0.5), 1 => Just(0.0)], 2.0..8.0);
     (lambda, flags, shares).prop_map(
         |(lambda, (sharp, single, polygons, plain), (merge, frame))| Options {
             lambda,
-            sharp: sharp && lambda.is_some(),
+            sharp: sharp && lambda.is_given(),
             single: single && !polygons,
             faces: if polygons {
                 Faces::Polygons
@@ -91,11 +95,11 @@ fn stages_keep_their_word(points: &[Point], options: &Options) -> Result<(), Tes
     let delaunay = delaunay(&samples, &context).expect("nobody cancelled");
     prop_assert_eq!(delaunay::check(&delaunay), vec![]);
     let chosen = PoleOptions {
-        lambda: options.lambda,
+        bound: Bound::choose(options.lambda, samples.len(), &[]).0,
         sharp: options.sharp,
     };
     let poles = poles(&samples, &delaunay, &chosen, &context).expect("nobody cancelled");
-    if options.lambda.is_none() {
+    if !options.lambda.is_given() {
         prop_assert_eq!(poles::check(&samples, &poles), vec![]);
     }
     let (poles, spacing) = merge_redundant(

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat};
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::{NoiseOption, Options, OutlierOption};
+use powercrust::{LabelOption, LambdaOption, NoiseOption, Options, OutlierOption};
 
 use super::formats::dotted;
 use super::from_mat_args::{self, FromMat};
@@ -170,13 +170,16 @@ pub struct Reconstruct {
     #[arg(long, help_heading = FILES)]
     pub skip_invalid: bool,
 
-    /// Ignore poles of samples whose Voronoi cell is too fat: 0 < L <= 1.
+    /// Ignore poles of samples whose Voronoi cell is too fat: auto, off, or
+    /// 0 < L <= 1.
     ///
-    /// Your estimate of how densely the surface is sampled, as the distance
-    /// between samples over the distance to the medial axis. Helps with noise
-    /// and sharp edges. By default every pole is kept.
-    #[arg(long, value_name = "L", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
-    pub lambda: Option<f64>,
+    /// L is your estimate of how densely the surface is sampled, as the
+    /// distance between samples over the distance to the medial axis. Helps
+    /// with noise and sharp edges. `auto` takes 0.4 for samples amid noise of
+    /// more than 0.4 of their spacing, and keeps every pole of the others;
+    /// `off` keeps every pole. By default auto; -v tells what was taken.
+    #[arg(long, value_name = "L", value_parser = wanted::lambda, allow_hyphen_values = true, help_heading = METHOD)]
+    pub lambda: Option<LambdaOption>,
 
     /// Extend faces to sharp edges and corners, for machine parts.
     ///
@@ -205,6 +208,14 @@ pub struct Reconstruct {
     /// surface.
     #[arg(long, value_name = "WHAT", value_parser = wanted::outliers, help_heading = METHOD)]
     pub outliers: Option<OutlierOption>,
+
+    /// How far to work on the labels inner and outer: greedy, refined.
+    ///
+    /// `greedy` leaves them as the paper's queue gives them; `refined` flips
+    /// those that the evidence is against, and asks winding numbers amid noise. By
+    /// default refined.
+    #[arg(long, value_name = "HOW", value_parser = wanted::label, help_heading = METHOD)]
+    pub label: Option<LabelOption>,
 
     #[arg(long, help = deep_angle_help(), value_name = "DEG", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
     pub deep_angle: Option<f64>,
@@ -290,8 +301,9 @@ pub struct Reconstruct {
     /// Names: sample (the input point at each vertex, -1 for none), normals,
     /// colours, columns of the input; and of faces thickness, gap (how thick
     /// the solid and the space before it are), polar_radii (the sum of the
-    /// radii of the two polar balls), component (0 the largest part), hole (1
-    /// where nothing was sampled). By default sample, hole and what the input
+    /// radii of the two polar balls), doubt (the share of the evidence that
+    /// the labels of the two balls go against, 0 to 1), component (0 the
+    /// largest part), hole (1 where nothing was sampled). By default sample, hole and what the input
     /// has. Vertices that are no input points are blended from those next to
     /// them. PLY and JSON hold all of it, OBJ, OFF and GLB normals and colours,
     /// STL nothing.
@@ -321,6 +333,14 @@ pub struct Reconstruct {
     /// each in the input and why: reason 0 floating, 1 beside the surface.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub report_outliers: Option<PathBuf>,
+
+    /// Write the poles dropped by --lambda and --sharp, as PLY: where each
+    /// lies, its sample's number in the input (point), 1 or 2 for the first
+    /// or second pole of it (pole), its distance from the sample (radius), the
+    /// bound that is held against (bound), and why: reason 0 nearer than the
+    /// bound, 1 the other pole of the sample is.
+    #[arg(long, value_name = "FILE", help_heading = EXTRA)]
+    pub report_poles: Option<PathBuf>,
 
     /// Write counts, timings and options as JSON; `-` for standard output.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
@@ -456,9 +476,10 @@ pub struct Offset {
     #[arg(long, help_heading = FILES)]
     pub skip_invalid: bool,
 
-    /// Ignore poles of samples whose Voronoi cell is too fat: 0 < L <= 1.
-    #[arg(long, value_name = "L", value_parser = real, allow_hyphen_values = true, help_heading = METHOD)]
-    pub lambda: Option<f64>,
+    /// Ignore poles of samples whose Voronoi cell is too fat: auto, off, or
+    /// 0 < L <= 1.
+    #[arg(long, value_name = "L", value_parser = wanted::lambda, allow_hyphen_values = true, help_heading = METHOD)]
+    pub lambda: Option<LambdaOption>,
 
     /// Extend faces to sharp edges and corners, for machine parts.
     #[arg(long, help_heading = METHOD)]

@@ -98,6 +98,10 @@ pub fn outliers_format(path: &Path) -> Result<(), Failure> {
     only_ply(path, "outliers", "--report-outliers writes .ply")
 }
 
+pub fn dropped_format(path: &Path) -> Result<(), Failure> {
+    only_ply(path, "poles", "--report-poles writes .ply")
+}
+
 fn only_ply(path: &Path, what: &str, hint: &str) -> Result<(), Failure> {
     match extension(path) {
         Some(extension) if extension.eq_ignore_ascii_case("ply") => Ok(()),

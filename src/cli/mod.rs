@@ -19,6 +19,7 @@ mod product;
 mod query;
 mod query_args;
 mod report;
+mod reports;
 mod run;
 mod show;
 mod simplify_args;

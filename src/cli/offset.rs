@@ -240,7 +240,7 @@ fn refused(plan: &Plan, args: &Args, error: Error) -> Failure {
         Error::Option {
             name: "distance", ..
         } => unfit(&error).hint("take a smaller distance, or a larger --box-factor (at most 100)"),
-        other => unsolved(&plan.input, plan.options.lambda.is_some(), other),
+        other => unsolved(&plan.input, plan.options.lambda.is_given(), other),
     }
 }
 

@@ -9,12 +9,13 @@ use std::path::{Path, PathBuf};
 use powercrust::holes::DEFAULT_SPACINGS;
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat, ReadOptions, WriteOptions};
 use powercrust::surface::ShellFilter;
-use powercrust::{Error, Faces, Options};
+use powercrust::{Error, Faces, LambdaOption, Options};
 
 use super::args::Reconstruct;
 use super::fail::{name, reason, Failure};
 use super::formats::{
-    axis_format, extension, input_format, mesh_format, outliers_format, poles_format,
+    axis_format, dropped_format, extension, input_format, mesh_format, outliers_format,
+    poles_format,
 };
 use super::output::Target;
 use super::show::Talk;
@@ -52,6 +53,8 @@ pub struct Plan {
     pub thin: bool,
     pub poles: Option<Out<()>>,
     pub outliers: Option<Out<()>>,
+    /// The poles dropped.
+    pub dropped: Option<Out<()>>,
     /// Whether outliers were spoken of on the command line.
     pub outliers_told: bool,
     pub stats: Option<Out<()>>,
@@ -88,6 +91,7 @@ impl Plan {
             &args.outer_mat,
             &args.poles,
             &args.report_outliers,
+            &args.report_poles,
             &args.stats,
         ];
         if !args.reporting.json && !args.dry_run && results.iter().all(|path| path.is_none()) {
@@ -104,6 +108,7 @@ impl Plan {
             thin: args.thin,
             poles: out(&args.poles, poles_format)?,
             outliers: out(&args.report_outliers, outliers_format)?,
+            dropped: out(&args.report_poles, dropped_format)?,
             stats: out(&args.stats, |_| Ok(()))?,
             ..plan
         };
@@ -125,6 +130,7 @@ impl Plan {
             thin: false,
             poles: None,
             outliers: None,
+            dropped: None,
             stats: None,
             write: WriteOptions {
                 ascii: args.ascii,
@@ -269,9 +275,9 @@ impl Plan {
 
 fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, Failure> {
     let plain = Options::default();
-    let mut lambda = args.lambda;
-    if args.sharp && lambda.is_none() {
-        lambda = Some(SHARP_LAMBDA);
+    let mut lambda = args.lambda.unwrap_or(plain.lambda);
+    if args.sharp && args.lambda.is_none() {
+        lambda = LambdaOption::Value(SHARP_LAMBDA);
         decisions.push(format!("--sharp without --lambda: taking {SHARP_LAMBDA}"));
     }
     let options = Options {
@@ -279,6 +285,7 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         sharp: args.sharp,
         noise: args.noise.unwrap_or(plain.noise),
         outliers: args.outliers.unwrap_or(plain.outliers),
+        label: args.label.unwrap_or(plain.label),
         deep_angle: args.deep_angle.unwrap_or(plain.deep_angle),
         box_factor: args.box_factor.unwrap_or(plain.box_factor),
         merge: args.merge.unwrap_or(plain.merge),

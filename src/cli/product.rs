@@ -129,6 +129,7 @@ impl Carried {
         face("thickness", &|| Column::Float(result.face_thickness()));
         face("gap", &|| Column::Float(result.face_gap()));
         face("polar_radii", &|| Column::Float(result.face_polar_radii()));
+        face("doubt", &|| Column::Float(result.face_doubt()));
         face("component", &|| {
             Column::Int(shells.part_of_face.iter().map(|&p| p as i32).collect())
         });

@@ -11,7 +11,7 @@ use powercrust::io::{
     MeshAttributes, MeshFormat, ReadOptions, WriteOptions,
 };
 use powercrust::memory::{estimate, of_machine};
-use powercrust::{Context, Error, Options, Point, PolygonMesh, Side};
+use powercrust::{Context, Error, LambdaOption, Options, Point, PolygonMesh, Side};
 use serde_json::json;
 
 use super::balls::{judged, named, Input};
@@ -223,7 +223,7 @@ fn axis(
         }
         Input::Points(format) => {
             let options = Options {
-                lambda: args.lambda,
+                lambda: args.lambda.unwrap_or(LambdaOption::Auto),
                 ..Options::default()
             };
             options.validate().map_err(failed)?;

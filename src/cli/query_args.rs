@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{real, Reporting};
+use powercrust::LambdaOption;
+
+use super::args::Reporting;
+use super::wanted;
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -52,8 +55,8 @@ pub struct Query {
 
     /// Ignore poles of samples whose Voronoi cell is too fat: see powercrust
     /// --help.
-    #[arg(long, value_name = "L", value_parser = real, allow_hyphen_values = true, help_heading = POINTS)]
-    pub lambda: Option<f64>,
+    #[arg(long, value_name = "L", value_parser = wanted::lambda, allow_hyphen_values = true, help_heading = POINTS)]
+    pub lambda: Option<LambdaOption>,
 
     /// Drop points that are NaN or infinite instead of refusing the input.
     #[arg(long, help_heading = POINTS)]

@@ -6,16 +6,13 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use powercrust::io::{
-    self as format, Attribute, AttributeValues, Cloud, CloudFormat, MeshAttributes, MeshFormat,
-    ReadError, WriteError,
-};
+use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
 use powercrust::memory::{estimate, of_machine, Estimate};
-use powercrust::mesh::PolygonMesh;
-use powercrust::noise::{NoiseReport, OutlierReport, Stray};
+use powercrust::noise::{NoiseReport, OutlierReport};
+use powercrust::poles::LOUD;
 use powercrust::tetra::Complex;
 use powercrust::{
-    Bounds, Context, Error, Options, OutlierOption, Point, Reconstruction, SampleError,
+    Bounds, Context, Error, Options, OutlierOption, Point, Reconstruction, SampleError, Stats,
 };
 use serde_json::json;
 
@@ -25,6 +22,7 @@ use super::output::{Staged, Target};
 use super::plan::{out_of_range, Plan};
 use super::product::{self, Product};
 use super::report::Report;
+use super::reports;
 use super::show::{counted, Bar, Talk};
 use super::stop;
 
@@ -62,7 +60,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     };
     let outcome = powercrust::reconstruct(&cloud.points, &options, &context);
     let outcome = outcome
-        .map_err(|error| unsolved(&plan.input, plan.options.lambda.is_some(), error))
+        .map_err(|error| unsolved(&plan.input, plan.options.lambda.is_given(), error))
         .and_then(|mut result| {
             // Only medial axes are made of the cells.
             if plan.inner_axis.is_none() && plan.outer_axis.is_none() {
@@ -90,6 +88,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     }
     tell_outliers(plan.talk, &result.stats.outliers);
     tell_noise(plan, &result.stats.noise);
+    tell_lambda(plan, &result.stats);
 
     report.verdict(plan)?;
     write_results(plan, &result, &product, &report, &cloud)?;
@@ -152,6 +151,26 @@ pub fn tell_outliers(talk: Talk, found: &OutlierReport) {
             ),
         );
     }
+}
+
+/// Says which lambda was taken, and why.
+fn tell_lambda(plan: &Plan, stats: &Stats) {
+    let found = &stats.lambda;
+    let line = match (found.lambda, found.chosen) {
+        (Some(lambda), true) => format!(
+            "--lambda auto: {lambda} for {} amid noise of more than {LOUD} of the spacing: {} dropped",
+            counted(found.asked, "sample", "samples"),
+            counted(stats.poles_dropped as usize, "pole", "poles"),
+        ),
+        (Some(lambda), false) => format!(
+            "--lambda {lambda}: {} of {} dropped",
+            counted(stats.poles_dropped as usize, "pole", "poles"),
+            counted(stats.skinny_samples as usize, "sample", "samples"),
+        ),
+        (None, true) => "--lambda auto: every pole kept, for want of noise".to_owned(),
+        (None, false) => return,
+    };
+    plan.talk.at(Talk::Verbose, line);
 }
 
 /// Says that samples were moved, and why or why not.
@@ -404,18 +423,13 @@ fn write_results(
         })?);
     }
     if let Some(out) = &plan.outliers {
-        let (points, reasons) = outliers(result, cloud);
-        let indices: Vec<i32> = result.outliers.iter().map(|o| o.0 as i32).collect();
-        let at = |name, values| Attribute { name, values };
-        let values = MeshAttributes {
-            vertices: vec![
-                at("point", AttributeValues::Int(&indices)),
-                at("reason", AttributeValues::Byte(&reasons)),
-            ],
-            ..MeshAttributes::default()
-        };
         staged.push(stage(&out.target, &out.path, |mut w| {
-            format::write_mesh(&mut w, MeshFormat::Ply, &points, &values, &plan.write)
+            reports::outliers(&mut w, result, cloud, &plan.write)
+        })?);
+    }
+    if let Some(out) = &plan.dropped {
+        staged.push(stage(&out.target, &out.path, |mut w| {
+            reports::dropped(&mut w, &result.dropped, &result.sample_source, &plan.write)
         })?);
     }
     if let Some(out) = &plan.stats {
@@ -423,21 +437,6 @@ fn write_results(
         staged.push(out.target.stage(|w| w.write_all(text.as_bytes()))?);
     }
     staged.into_iter().try_for_each(Staged::publish)
-}
-
-/// The samples left out, as a mesh without faces, and why each was.
-fn outliers(result: &Reconstruction, cloud: &Cloud) -> (PolygonMesh, Vec<u8>) {
-    let places = result.outliers.iter().map(|o| cloud.points[o.0 as usize]);
-    let points = PolygonMesh {
-        vertices: places.collect(),
-        ..PolygonMesh::default()
-    };
-    let reason = |why: Stray| match why {
-        Stray::Floating => 0,
-        Stray::Beside => 1,
-    };
-    let reasons = result.outliers.iter().map(|o| reason(o.1));
-    (points, reasons.collect())
 }
 
 /// Stages one file; what is no error of the disk is one of ours or of the

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use powercrust::LambdaOption;
+
 use super::args::{real, Reporting};
-use super::wanted::{length, Length};
+use super::wanted::{self, length, Length};
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -151,8 +153,8 @@ pub struct SimplifyMat {
 
     /// Ignore poles of samples whose Voronoi cell is too fat: see powercrust
     /// --help.
-    #[arg(long, value_name = "L", value_parser = real, allow_hyphen_values = true, help_heading = POINTS)]
-    pub lambda: Option<f64>,
+    #[arg(long, value_name = "L", value_parser = wanted::lambda, allow_hyphen_values = true, help_heading = POINTS)]
+    pub lambda: Option<LambdaOption>,
 
     /// Drop points that are NaN or infinite instead of refusing the input.
     #[arg(long, help_heading = POINTS)]

@@ -12,7 +12,7 @@ use powercrust::io::{
     read_axis, read_cloud, write_axis_parts, AxisFormat, CloudFormat, ReadOptions, WriteOptions,
 };
 use powercrust::memory::{estimate, of_machine};
-use powercrust::{Context, Error, Options, PowerShape, Side};
+use powercrust::{Context, Error, LambdaOption, Options, PowerShape, Side};
 use serde_json::json;
 
 use super::balls::{judged, named, Input};
@@ -48,7 +48,7 @@ pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
         let how = lengths(args, balls.diagonal);
         talk.at(Talk::Verbose, format_args!("options {}", json!(how)));
         let simple = simplify(&balls, &how, side, &context)
-            .map_err(|error| unfit(&args.input, options.lambda.is_some(), error))?;
+            .map_err(|error| unfit(&args.input, options.lambda.is_given(), error))?;
         let mut shape = simple.balls.shape(side);
         let thin = args.thin || args.structure || args.skeleton;
         let thinned = if thin { shape.thin() } else { 0 };
@@ -221,7 +221,7 @@ fn balls(
         WhichSide::Inner => Side::Inner,
         WhichSide::Outer => Side::Outer,
     };
-    let failed = |error| unfit(&args.input, options.lambda.is_some(), error);
+    let failed = |error| unfit(&args.input, options.lambda.is_given(), error);
     match input {
         Input::Axis(format) => {
             if args.lambda.is_some() || args.skip_invalid {
@@ -277,7 +277,7 @@ fn balls(
 
 fn pipeline_options(args: &SimplifyMat) -> Result<Options, Failure> {
     let options = Options {
-        lambda: args.lambda,
+        lambda: args.lambda.unwrap_or(LambdaOption::Auto),
         ..Options::default()
     };
     match options.validate() {

@@ -4,16 +4,17 @@
 use powercrust::holes::{HoleSize, GROWN};
 use powercrust::io::MeshFormat;
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::{NoiseOption, OutlierOption};
+use powercrust::{LabelOption, LambdaOption, NoiseOption, OutlierOption};
 
 /// The names of `--attributes` that are not columns of the input.
-pub const OWN: [&str; 8] = [
+pub const OWN: [&str; 9] = [
     "sample",
     "normals",
     "colours",
     "thickness",
     "gap",
     "polar_radii",
+    "doubt",
     "component",
     "hole",
 ];
@@ -244,6 +245,27 @@ pub fn noise(text: &str) -> Result<NoiseOption, String> {
             Ok(scale) if scale > 0.0 && scale.is_finite() => Ok(NoiseOption::Scale(scale)),
             _ => Err("expected auto, off or a length above 0".to_owned()),
         },
+    }
+}
+
+/// Reads `auto`, `off` or a number, which is looked at later.
+pub fn lambda(text: &str) -> Result<LambdaOption, String> {
+    match text {
+        "auto" => Ok(LambdaOption::Auto),
+        "off" => Ok(LambdaOption::Off),
+        _ => match text.parse::<f64>() {
+            Ok(lambda) if lambda.is_finite() => Ok(LambdaOption::Value(lambda)),
+            _ => Err("expected auto, off or a number in (0, 1]".to_owned()),
+        },
+    }
+}
+
+/// Reads `greedy` or `refined`.
+pub fn label(text: &str) -> Result<LabelOption, String> {
+    match text {
+        "greedy" => Ok(LabelOption::Greedy),
+        "refined" => Ok(LabelOption::Refined),
+        _ => Err("expected greedy or refined".to_owned()),
     }
 }
 

@@ -34,24 +34,40 @@ pub fn energy(
     sides: &[Side],
     options: &LabelOptions,
 ) -> Energy {
+    at_odds(evidence, neighbours, sides, options).0
+}
+
+/// The energy of a labelling, and the balls in pairs that it goes against,
+/// ascending.
+pub(super) fn at_odds(
+    evidence: &Evidence,
+    neighbours: &Neighbours,
+    sides: &[Side],
+    options: &LabelOptions,
+) -> (Energy, Vec<u32>) {
     let mut energy = Energy::default();
+    let mut odd = Vec::new();
     for pair in evidence.opposites {
         if sides[pair.poles[0] as usize] == sides[pair.poles[1] as usize] {
             energy.opposites += pair.weight;
             energy.like_opposites += 1;
+            odd.extend(pair.poles);
         }
     }
     // The sum is taken in the order of the balls: no rounding by threads.
-    let unlike: Vec<f64> = (0..evidence.balls.len() as u32)
+    let unlike: Vec<(f64, [u32; 2])> = (0..evidence.balls.len() as u32)
         .into_par_iter()
         .flat_map_iter(|p| {
             let side = sides[p as usize];
             let other = move |&&q: &&u32| q > p && sides[q as usize] != side;
             let unlike = neighbours.at(p).iter().filter(other);
-            unlike.filter_map(move |&q| evidence.depth(p, q, options))
+            unlike.filter_map(move |&q| Some((evidence.depth(p, q, options)?, [p, q])))
         })
         .collect();
-    energy.neighbours = unlike.iter().fold(0.0, |sum, depth| sum + depth);
+    energy.neighbours = unlike.iter().fold(0.0, |sum, (depth, _)| sum + depth);
     energy.unlike_neighbours = unlike.len() as u64;
-    energy
+    odd.extend(unlike.iter().flat_map(|(_, pair)| pair));
+    odd.sort_unstable();
+    odd.dedup();
+    (energy, odd)
 }

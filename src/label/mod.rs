@@ -10,6 +10,7 @@
 //! the geometry; so the labels depend on neither threads nor hashing.
 
 mod check;
+mod doubt;
 mod energy;
 mod hold;
 mod propagate;
@@ -19,6 +20,7 @@ mod wind;
 mod winding;
 
 pub use check::{check, Finding};
+pub use doubt::{doubt, TORN};
 pub use energy::{energy, Energy};
 pub use hold::{hold, Held, MOST_UNHELD};
 pub use propagate::label;

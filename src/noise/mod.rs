@@ -64,6 +64,9 @@ pub struct NoiseReport {
 pub struct Treated {
     /// A place for each sample, in the input's coordinates.
     pub points: Vec<Point>,
+    /// The noise that was at each sample as a share of the spacing; 0 at those
+    /// not moved.
+    pub shares: Vec<f32>,
     /// What was done.
     pub report: NoiseReport,
 }
@@ -141,11 +144,21 @@ pub fn treat(
     report.neighbours = level::quantile(&mut counts, 0.5) as usize;
     report.mean_move = (sum / report.moved as f64).sqrt() * unit;
     report.largest_move = report.largest_move.sqrt() * unit;
+    let shares = (local.iter())
+        .map(|at| match at.neighbours {
+            0 => 0.0,
+            _ => (at.noise / at.spacing) as f32,
+        })
+        .collect();
     let points = (feet.iter().enumerate())
         .map(|(s, foot)| match local[s].neighbours {
             0 => samples.points[s],
             _ => samples.lattice.to_user(*foot),
         })
         .collect();
-    Ok(Ok(Treated { points, report }))
+    Ok(Ok(Treated {
+        points,
+        shares,
+        report,
+    }))
 }

@@ -9,20 +9,24 @@
 //!    it. Cells whose rounded centres coincide are one ball that touches the
 //!    samples of all of them: on a sphere every inner pole is the centre.
 //! 4. With a bound `lambda`, poles that fail the skinniness test are dropped
-//!    (`skinny.rs`).
+//!    (`skinny.rs`). Which bound, and of which samples it is asked, is chosen
+//!    from the noise (`bound.rs`).
 //!
 //! Balls come numbered along a space-filling curve by their centres, so their
 //! ids depend on nothing but the set of samples.
 
 mod balls;
+mod bound;
 mod candidates;
 mod check;
 mod select;
 mod skinny;
 
 pub use balls::{BallLattice, Balls};
+pub use bound::{Bound, BoundReport, LOUD};
 pub use candidates::Candidates;
 pub use check::{check, Finding};
+pub use select::{DroppedPole, Reason};
 
 use crate::context::{Cancelled, Context, Portion, Stage};
 use crate::delaunay::{Delaunay, Samples};
@@ -32,10 +36,10 @@ use crate::tetra::Stars;
 pub const NO_POLE: u32 = u32::MAX;
 
 /// Which poles to drop (section 6).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PoleOptions {
-    /// The skinniness bound; `None` keeps all poles.
-    pub lambda: Option<f64>,
+    /// The skinniness bound.
+    pub bound: Bound,
     /// Drop both poles of a sample that fails.
     pub sharp: bool,
 }
@@ -48,10 +52,16 @@ pub struct Poles {
     /// First and second pole of each sample, [`NO_POLE`] where there is none
     /// or it was dropped.
     pub of_sample: Vec<[u32; 2]>,
-    /// Samples that lost a pole to the skinniness test.
-    pub skinny_samples: u32,
-    /// Poles (sides of samples) dropped by it.
-    pub dropped: u32,
+    /// Poles (sides of samples) dropped, by sample.
+    pub dropped: Vec<DroppedPole>,
+}
+
+impl Poles {
+    /// The number of samples that lost a pole.
+    pub fn samples_short(&self) -> usize {
+        let samples = self.dropped.chunk_by(|a, b| a.sample == b.sample);
+        samples.count()
+    }
 }
 
 /// Finds the poles of all samples.
@@ -102,7 +112,6 @@ pub fn poles(
     Ok(Poles {
         balls,
         of_sample,
-        skinny_samples: chosen.skinny_samples,
         dropped: chosen.dropped,
     })
 }

@@ -38,8 +38,35 @@ pub(super) fn centre(delaunay: &Delaunay, cell: [u32; 4], lattice: BallLattice) 
 pub(super) struct Chosen {
     /// First and second pole of each sample, as cells.
     pub cells: Vec<[u32; 2]>,
-    pub skinny_samples: u32,
-    pub dropped: u32,
+    /// Those dropped, by sample.
+    pub dropped: Vec<DroppedPole>,
+}
+
+/// Why a pole was dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reason {
+    /// It is nearer to its sample than the skinniness bound allows (section 6.1).
+    Skinny,
+    /// The other pole of its sample is, and both go (section 6.2).
+    Sharp,
+}
+
+/// A pole that was dropped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DroppedPole {
+    /// The sample whose pole it was.
+    pub sample: u32,
+    /// 1 for the first pole of the sample, 2 for the second.
+    pub pole: u8,
+    /// Where it lies.
+    pub centre: Point,
+    /// Its distance from the sample.
+    pub radius: f64,
+    /// The lower bound on the local feature size that it was held against.
+    pub bound: f64,
+    /// Why it was dropped.
+    pub reason: Reason,
 }
 
 /// First pole: the farthest Voronoi vertex. Second: the farthest with a
@@ -58,10 +85,9 @@ pub(super) fn select(
     let count = delaunay.samples;
     let mut chosen = Chosen {
         cells: Vec::with_capacity(count),
-        skinny_samples: 0,
-        dropped: 0,
+        dropped: Vec::new(),
     };
-    let (mut cells, mut dropped) = (Vec::new(), Vec::new());
+    let mut found = Vec::new();
     for from in (0..count).step_by(BLOCK) {
         progress.advance(from, count)?;
         let block = (from..count.min(from + BLOCK)).into_par_iter();
@@ -71,18 +97,26 @@ pub(super) fn select(
             vertices.clear();
             let star = stars.at(s as u32).iter();
             vertices.extend(star.map(|&c| (centres[c as usize], c)));
-            drop_misshapen(at, vertices, pair(at, vertices), options)
+            let poles = pair(at, vertices);
+            let cells = poles.map(|p| p.map_or(NO_POLE, |(_, c)| c));
+            match options.bound.of(s) {
+                Some(lambda) => held_to(lambda, options.sharp, s as u32, at, vertices, poles),
+                None => (cells, None),
+            }
         });
-        poles.unzip_into_vecs(&mut cells, &mut dropped);
-        chosen.cells.extend_from_slice(&cells);
-        chosen.skinny_samples += dropped.iter().filter(|&&n| n > 0).count() as u32;
-        chosen.dropped += dropped.iter().sum::<u32>();
+        poles.collect_into_vec(&mut found);
+        chosen.cells.extend(found.iter().map(|f| f.0));
+        let dropped = found.iter().filter_map(|f| f.1.as_deref());
+        chosen.dropped.extend(dropped.flatten().flatten());
     }
     Ok(chosen)
 }
 
 /// A Voronoi vertex and its cell.
 type Vertex = (Point, u32);
+
+/// The poles of one sample that were dropped; few samples have any.
+type Gone = Option<Box<[Option<DroppedPole>; 2]>>;
 
 /// The two poles of a sample at `s` among its Voronoi vertices.
 fn pair(s: Point, vertices: &[Vertex]) -> [Option<Vertex>; 2] {
@@ -111,26 +145,40 @@ fn farthest(s: Point, vertices: &[Vertex], ahead: impl Fn(Point) -> bool) -> Opt
     best
 }
 
-/// Applies the skinniness test; the second value counts the poles dropped.
-fn drop_misshapen(
+/// Applies the skinniness test to the poles of a sample: those that stay, as
+/// cells, and those that go.
+fn held_to(
+    lambda: f64,
+    sharp: bool,
+    sample: u32,
     s: Point,
     vertices: &[Vertex],
     poles: [Option<Vertex>; 2],
-    options: &PoleOptions,
-) -> ([u32; 2], u32) {
+) -> ([u32; 2], Gone) {
     let mut kept = poles.map(|p| p.map_or(NO_POLE, |(_, c)| c));
-    let (Some(lambda), Some((first, _))) = (options.lambda, poles[0]) else {
-        return (kept, 0);
+    let mut dropped = [None; 2];
+    let Some((first, _)) = poles[0] else {
+        return (kept, None);
     };
     let all = vertices.iter().map(|v| v.0);
     let bound = skinny::feature_size_bound(s, first, all, lambda);
     let fails = poles.map(|p| p.is_some_and(|(centre, _)| dist_sq(centre, s) < bound * bound));
-    let mut dropped = 0;
     for k in 0..2 {
-        if fails[k] || (options.sharp && (fails[0] || fails[1])) {
-            dropped += u32::from(kept[k] != NO_POLE);
-            kept[k] = NO_POLE;
-        }
+        let reason = match fails[k] {
+            true => Reason::Skinny,
+            false if sharp && fails[1 - k] => Reason::Sharp,
+            false => continue,
+        };
+        dropped[k] = poles[k].map(|(centre, _)| DroppedPole {
+            sample,
+            pole: k as u8 + 1,
+            centre,
+            radius: dist_sq(centre, s).sqrt(),
+            bound,
+            reason,
+        });
+        kept[k] = NO_POLE;
     }
-    (kept, dropped)
+    let any = dropped.iter().any(Option::is_some);
+    (kept, any.then(|| Box::new(dropped)))
 }

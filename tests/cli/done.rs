@@ -36,11 +36,11 @@ fn verbose_says_what_was_decided() {
         .code(DONE)
         .says("--sharp without --lambda: taking 0.4")
         .says("torus.xyz: text, 600 points")
-        .says("\"lambda\":0.4");
+        .says("\"lambda\":{\"value\":0.4}");
     place
         .run("torus.xyz -o crust.ply --sharp --lambda 0.7 -vv")
         .code(DONE)
-        .says("\"lambda\":0.7")
+        .says("\"lambda\":{\"value\":0.7}")
         .says("\"samples\": 600");
 }
 
@@ -548,4 +548,45 @@ fn outliers_are_reported() {
     place
         .run("wild.xyz -o crust.ply --report-outliers strays.xyz")
         .fails(USAGE, "strays.xyz: .xyz is no outliers format");
+}
+
+/// The poles dropped are listed with their samples and bounds.
+#[test]
+fn dropped_poles_are_reported() {
+    let place = Place::new();
+    place.put("torus.xyz", torus(600));
+    let flags = "--lambda 0.3 --label greedy --report-poles poles.ply --ascii --stats s.json -v";
+    let ran = place.run(&format!("torus.xyz -o crust.ply {flags}"));
+    ran.code(DONE).says("--lambda 0.3: ").says(" dropped");
+    let stats: serde_json::Value = serde_json::from_slice(&place.get("s.json")).unwrap();
+    let dropped = stats["stats"]["poles_dropped"].as_u64().unwrap();
+    assert!(dropped > 0);
+    assert_eq!(stats["stats"]["options"]["label"], "greedy");
+    assert_eq!(stats["stats"]["flips"], 0);
+    let poles = String::from_utf8(place.get("poles.ply")).unwrap();
+    assert!(
+        poles.contains(&format!("element vertex {dropped}\n")),
+        "{poles}"
+    );
+    let rows = poles.split("end_header\n").nth(1).unwrap().lines();
+    let mut count = 0;
+    for row in rows {
+        let row: Vec<f64> = row.split(' ').map(|w| w.parse().unwrap()).collect();
+        let [_, _, _, point, pole, radius, bound, reason] = row[..] else {
+            panic!("{row:?}");
+        };
+        assert!(point < 600.0 && (pole == 1.0 || pole == 2.0));
+        assert!(radius < bound && reason == 0.0);
+        count += 1;
+    }
+    assert_eq!(count, dropped);
+
+    // Without noise none is dropped, and the file says so.
+    let ran = place.run("torus.xyz -o crust.ply --report-poles poles.ply --ascii -v");
+    ran.code(DONE).says("every pole kept");
+    let poles = String::from_utf8(place.get("poles.ply")).unwrap();
+    assert!(poles.contains("element vertex 0\n"), "{poles}");
+    let ran = place.run("torus.xyz -o crust.ply --report-poles poles.xyz");
+    ran.fails(USAGE, "poles.xyz: .xyz is no poles format");
+    place.run("torus.xyz -o crust.ply --label some").code(USAGE);
 }

@@ -4,7 +4,7 @@ use crate::common::shapes::{self, Shape};
 use crate::run::{position, Run};
 use powercrust::delaunay::circumcentre;
 use powercrust::geom::vec3::{dist_sq, dot, norm, sub};
-use powercrust::poles::{self, poles, PoleOptions, NO_POLE};
+use powercrust::poles::{self, poles, Bound, PoleOptions, Reason, NO_POLE};
 use powercrust::{Context, Point};
 
 fn clouds() -> Vec<(&'static str, Vec<Point>)> {
@@ -142,7 +142,7 @@ fn the_skinniness_test_is_that_of_section_6() {
             .collect();
         for (lambda, sharp) in [(0.1, false), (0.4, false), (0.4, true), (1.0, true)] {
             let options = PoleOptions {
-                lambda: Some(lambda),
+                bound: Bound::All(lambda),
                 sharp,
             };
             let d = &run.delaunay;
@@ -173,7 +173,16 @@ fn the_skinniness_test_is_that_of_section_6() {
                 }
                 failed += (fails[0] || fails[1]) as u32;
             }
-            assert_eq!((cut.dropped, cut.skinny_samples), (lost, failed), "{name}");
+            let counted = (cut.dropped.len() as u32, cut.samples_short() as u32);
+            assert_eq!(counted, (lost, failed), "{name}");
+            for gone in &cut.dropped {
+                let full = run.poles.of_sample[gone.sample as usize];
+                let ball = &run.balls[full[gone.pole as usize - 1] as usize];
+                assert_eq!(gone.centre, ball.centre, "{name}");
+                let skinny = gone.reason == Reason::Skinny;
+                assert_eq!(skinny, gone.radius < gone.bound, "{name}");
+                assert!(skinny || sharp, "{name}");
+            }
             dropped += lost;
         }
     }
