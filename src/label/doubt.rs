@@ -22,8 +22,8 @@ pub const TORN: f32 = 0.25;
 /// #     if [x, y, z] != [0, 0, 0] { points.push([x as f64, y as f64, z as f64]); }
 /// # }}}
 /// let result = reconstruct(&points, &Options::default(), &Context::default())?;
-/// // A cube leaves no doubt.
-/// assert!(result.doubt.iter().all(|&d| d == 0.0));
+/// // A cube leaves little doubt, and no ball torn.
+/// assert!(result.doubt.iter().all(|&d| d < powercrust::label::TORN));
 /// # Ok::<(), powercrust::Error>(())
 /// ```
 pub fn doubt(
