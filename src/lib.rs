@@ -19,8 +19,8 @@
 //! # Catalogue
 //!
 //! **The whole way**
-//! - [`reconstruct`]: points in, [`Reconstruction`] out
-//! - [`Options`], [`Faces`], [`NoiseOption`], [`OutlierOption`]: what may be said; the default says nothing
+//! - [`reconstruct`], [`reconstruct_seen`]: points in, [`Reconstruction`] out
+//! - [`Options`], [`Faces`], [`LabelOption`], [`LambdaOption`], [`NoiseOption`], [`OutlierOption`]: what may be said; the default says nothing
 //! - [`Context`], [`Progress`], [`Silent`], [`Stage`], [`Cancelled`]: threads, progress, a stop button
 //! - [`Error`], [`SampleError`]: why there is no surface
 //! - [`Stats`]: counts, timings, options of a run
@@ -107,7 +107,7 @@ pub use error::{Error, SampleError};
 pub use geom::{Ball, Bounds, Point, Side};
 pub use mesh::PolygonMesh;
 pub use options::{Faces, LabelOption, LambdaOption, NoiseOption, Options, OutlierOption};
-pub use pipeline::{reconstruct, PolarBall, Reconstruction};
+pub use pipeline::{reconstruct, reconstruct_seen, PolarBall, Reconstruction};
 pub use stats::Stats;
 pub use surface::{Crust, PowerShape};
 

@@ -9,7 +9,7 @@ use crate::delaunay::{delaunay, samples, Delaunay, Lattice, Samples};
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
 use crate::label::{
-    doubt, energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours,
+    doubt, energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours, Seen,
     MOST_UNHELD, TORN,
 };
 use crate::memory;
@@ -143,11 +143,42 @@ pub fn reconstruct(
     options: &Options,
     context: &Context,
 ) -> Result<Reconstruction, Error> {
-    options.validate()?;
-    context.install(|| run(points, options, context))
+    reconstruct_seen(points, &[], options, context)
 }
 
-fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconstruction, Error> {
+/// [`reconstruct`] with a vector out of the solid at each point, where one is
+/// known: its normal, or the way to the scanner that saw it; of any length, zero where nothing
+/// is known. They are evidence for the labels, beside all other, if they agree with
+/// most labels found without them, or all point inwards ([`label::Agreement`]).
+///
+/// # Errors
+/// As [`reconstruct`]; [`Error::Option`] if there is neither no vector nor one
+/// for each point.
+///
+/// [`label::Agreement`]: crate::label::Agreement
+pub fn reconstruct_seen(
+    points: &[Point],
+    outward: &[Point],
+    options: &Options,
+    context: &Context,
+) -> Result<Reconstruction, Error> {
+    options.validate()?;
+    if !outward.is_empty() && outward.len() != points.len() {
+        return Err(Error::Option {
+            name: "outward",
+            value: outward.len() as f64,
+            expected: "a vector for each point, or none",
+        });
+    }
+    context.install(|| run(points, outward, options, context))
+}
+
+fn run(
+    points: &[Point],
+    ways: &[Point],
+    options: &Options,
+    context: &Context,
+) -> Result<Reconstruction, Error> {
     let mut stats = Stats::new(options);
     let mut clock = Clock::start();
 
@@ -233,20 +264,43 @@ fn run(points: &[Point], options: &Options, context: &Context) -> Result<Reconst
         balls: &on_lattice,
         outer: &poles.balls.touches_frame,
         opposites: &pairs,
+        outward: &[],
     };
     let neighbours = Neighbours::of(&power, context)?;
     let how = LabelOptions {
         deep: -options.deep_angle.to_radians().cos(),
     };
     let mut labels = label(&evidence, &neighbours, &how, context)?;
+    let mut seen = None;
+    if !ways.is_empty() {
+        let ways = (samples.source.iter()).map(|&p| ways[p as usize]).collect();
+        let (of_sample, sites) = (&poles.of_sample, &delaunay.sites);
+        (stats.outward, seen) = Seen::of(&evidence, of_sample, sites, ways, &labels.sides);
+    }
+    let evidence = Evidence {
+        outward: seen.as_ref().map_or(&[], |s| &s.said),
+        ..evidence
+    };
+    if seen.is_some() {
+        labels = Seen::label_again(&evidence, &neighbours, labels, &how, context)?;
+    }
     let refined = options.label == LabelOption::Refined;
     let greedy = refined.then(|| labels.sides.clone());
     if refined {
         stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
     }
     if refined && stats.noise.treated {
+        let ways = seen.as_ref().map_or(&[][..], |s| &s.ways);
         let (of_sample, sites) = (&poles.of_sample, &delaunay.sites);
-        stats.wound = wind(&evidence, of_sample, sites, &spacing, &mut labels, context)?;
+        stats.wound = wind(
+            &evidence,
+            of_sample,
+            sites,
+            &spacing,
+            ways,
+            &mut labels,
+            context,
+        )?;
     }
     stats.unreached_balls = labels.unreached;
     let (left, mut doubt) = doubt(&evidence, &neighbours, &labels.sides, &how);

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::label::{Energy, Held, Wound};
+use crate::label::{Agreement, Energy, Held, Wound};
 use crate::mesh::Shape;
 use crate::noise::{NoiseReport, OutlierReport};
 use crate::options::Options;
@@ -84,6 +84,8 @@ pub struct Stats {
     pub volume: f64,
     /// The evidence the labels of the greedy pass go against.
     pub greedy_energy: Energy,
+    /// How labels agree with normals or places of scanners given.
+    pub outward: Agreement,
     /// Labels changed afterwards to lower it.
     pub flips: u32,
     /// What winding numbers said of the labels; asked only where there was
@@ -146,6 +148,7 @@ impl Stats {
             vertices: 0,
             volume: 0.0,
             greedy_energy: Energy::default(),
+            outward: Agreement::default(),
             flips: 0,
             wound: Wound::default(),
             label_energy: Energy::default(),

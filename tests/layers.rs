@@ -75,8 +75,10 @@ fn home(name: &str) -> &str {
         "Error" | "SampleError" => "error",
         "Ball" | "Bounds" | "Point" | "Side" => "geom",
         "PolygonMesh" => "mesh",
-        "Faces" | "NoiseOption" | "Options" | "OutlierOption" => "options",
-        "reconstruct" | "PolarBall" | "Reconstruction" => "pipeline",
+        "Faces" | "LabelOption" | "LambdaOption" | "NoiseOption" | "Options" | "OutlierOption" => {
+            "options"
+        }
+        "reconstruct" | "reconstruct_seen" | "PolarBall" | "Reconstruction" => "pipeline",
         "Stats" => "stats",
         "Crust" | "PowerShape" => "surface",
         module => module,

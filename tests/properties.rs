@@ -121,6 +121,7 @@ fn stages_keep_their_word(points: &[Point], options: &Options) -> Result<(), Tes
         balls: &balls,
         outer: &poles.balls.touches_frame,
         opposites: &pairs,
+        outward: &[],
     };
     let neighbours = Neighbours::of(&power, &context).expect("nobody cancelled");
     let how = LabelOptions::default();

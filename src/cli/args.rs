@@ -7,13 +7,13 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat};
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::{LabelOption, LambdaOption, NoiseOption, Options, OutlierOption};
+use powercrust::{LabelOption, LambdaOption, NoiseOption, Options, OutlierOption, Point};
 
 use super::formats::dotted;
 use super::from_mat_args::{self, FromMat};
 use super::query_args::{self, Query};
 use super::simplify_args::{self, SimplifyMat};
-use super::wanted::{self, Distance, Distances, HoleWidth, Holes, Wanted};
+use super::wanted::{self, Distance, Distances, HoleWidth, Holes, Normals, Wanted};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -208,6 +208,24 @@ pub struct Reconstruct {
     /// surface.
     #[arg(long, value_name = "WHAT", value_parser = wanted::outliers, help_heading = METHOD)]
     pub outliers: Option<OutlierOption>,
+
+    /// Where the scanner stood, in the input's unit: what it saw is outside.
+    ///
+    /// Evidence for which side of a sample is outside, instead of normals in
+    /// the input. Believed if the surface found without it agrees with four
+    /// fifths of it, or with a fifth at most: then the scanner stood in a room
+    /// or a hollow, and what it saw is inside.
+    #[arg(long, value_name = "X,Y,Z", value_parser = wanted::place, allow_hyphen_values = true, help_heading = METHOD)]
+    pub sensor: Option<Point>,
+
+    /// Whether normals of the input say which side is outside: auto, ignore.
+    ///
+    /// `auto` takes them as evidence where the surface found without them
+    /// agrees with four fifths of them, or of them turned around; so does the
+    /// viewpoint of PCD files without normals. `ignore` only carries them to
+    /// the mesh. By default auto; -v tells how they agree.
+    #[arg(long, value_name = "HOW", value_enum, hide_possible_values = true, help_heading = METHOD)]
+    pub normals: Option<Normals>,
 
     /// How far to work on the labels inner and outer: greedy, refined.
     ///

@@ -25,6 +25,7 @@ mod show;
 mod simplify_args;
 mod simplify_mat;
 mod stop;
+mod tell;
 mod wanted;
 
 use std::panic::{catch_unwind, AssertUnwindSafe};

@@ -18,9 +18,10 @@ use super::fail::{name, Code, Failure};
 use super::formats::mesh_format;
 use super::output::{Staged, Target};
 use super::plan::{apart, out, Out, Plan};
-use super::run::{enough_memory, read, stage, tell_outliers, unsolved, usual_outliers};
+use super::run::{self, enough_memory, read, stage, unsolved, usual_outliers};
 use super::show::{counted, Bar, Talk};
-use super::wanted::{distance, Distance};
+use super::tell;
+use super::wanted::{distance, Distance, Normals};
 
 /// What stands for the distance in the name of a file.
 const PLACE: &str = "{d}";
@@ -57,8 +58,8 @@ pub fn offset(args: &Args) -> Result<ExitCode, Failure> {
     let made = (|| {
         let failed = |error| refused(&plan, args, error);
         let mut result =
-            powercrust::reconstruct(&cloud.points, &options, &context).map_err(failed)?;
-        tell_outliers(plan.talk, &result.stats.outliers);
+            run::reconstruct(&cloud, (None, Normals::Auto), &options, &context).map_err(failed)?;
+        tell::outliers(plan.talk, &result.stats.outliers);
         result.power.complex = Complex::default();
         let how = OffsetOptions {
             tolerance: args.tolerance.as_ref().map(|t| t.of(diagonal)),

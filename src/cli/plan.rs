@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use powercrust::holes::DEFAULT_SPACINGS;
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat, ReadOptions, WriteOptions};
 use powercrust::surface::ShellFilter;
-use powercrust::{Error, Faces, LambdaOption, Options};
+use powercrust::{Error, Faces, LambdaOption, Options, Point};
 
 use super::args::Reconstruct;
 use super::fail::{name, reason, Failure};
@@ -19,7 +19,7 @@ use super::formats::{
 };
 use super::output::Target;
 use super::show::Talk;
-use super::wanted::{Fewer, HoleWidth, Holes, Wanted};
+use super::wanted::{Fewer, HoleWidth, Holes, Normals, Wanted};
 
 /// The skinniness bound `--sharp` takes when none is given: near it the error
 /// at edges is least (a cube of 10,000 random samples: 0.0005 with 0.4, 0.015
@@ -55,6 +55,10 @@ pub struct Plan {
     pub outliers: Option<Out<()>>,
     /// The poles dropped.
     pub dropped: Option<Out<()>>,
+    /// Where the scanner stood.
+    pub sensor: Option<Point>,
+    /// Whether normals tell what is outside.
+    pub normals: Normals,
     /// Whether outliers were spoken of on the command line.
     pub outliers_told: bool,
     pub stats: Option<Out<()>>,
@@ -131,6 +135,8 @@ impl Plan {
             poles: None,
             outliers: None,
             dropped: None,
+            sensor: args.sensor,
+            normals: args.normals.unwrap_or_default(),
             stats: None,
             write: WriteOptions {
                 ascii: args.ascii,

@@ -20,11 +20,11 @@ use super::formats::{extension, input_format};
 use super::output::Target;
 use super::plan::{apart, check_input, out, Out};
 use super::query_args::Query;
-use super::run::{
-    enough_memory, misread, read_bytes, stage, tell_outliers, unsolved, usual_outliers,
-};
+use super::run::{self, enough_memory, misread, read_bytes, stage, unsolved, usual_outliers};
 use super::show::{counted, Bar, Talk};
 use super::stop;
+use super::tell;
+use super::wanted::Normals;
 
 /// How the table is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,9 +238,9 @@ fn axis(
                 outliers: usual_outliers(&cloud),
                 ..options
             };
-            let result = powercrust::reconstruct(&cloud.points, &options, context);
+            let result = run::reconstruct(&cloud, (None, Normals::Auto), &options, context);
             let result = result.map_err(failed)?;
-            tell_outliers(talk, &result.stats.outliers);
+            tell::outliers(talk, &result.stats.outliers);
             Ok(result.medial_axis())
         }
     }

@@ -6,13 +6,12 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use powercrust::geom::vec3::sub;
 use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
 use powercrust::memory::{estimate, of_machine, Estimate};
-use powercrust::noise::{NoiseReport, OutlierReport};
-use powercrust::poles::LOUD;
 use powercrust::tetra::Complex;
 use powercrust::{
-    Bounds, Context, Error, Options, OutlierOption, Point, Reconstruction, SampleError, Stats,
+    Bounds, Context, Error, Options, OutlierOption, Point, Reconstruction, SampleError,
 };
 use serde_json::json;
 
@@ -25,6 +24,8 @@ use super::report::Report;
 use super::reports;
 use super::show::{counted, Bar, Talk};
 use super::stop;
+use super::tell;
+use super::wanted::Normals;
 
 pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     let start = Instant::now();
@@ -58,7 +59,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
         single: plan.options.single || holds_single(plan, &cloud.points),
         ..plan.options.clone()
     };
-    let outcome = powercrust::reconstruct(&cloud.points, &options, &context);
+    let outcome = reconstruct(&cloud, (plan.sensor, plan.normals), &options, &context);
     let outcome = outcome
         .map_err(|error| unsolved(&plan.input, plan.options.lambda.is_given(), error))
         .and_then(|mut result| {
@@ -86,9 +87,10 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
             ),
         );
     }
-    tell_outliers(plan.talk, &result.stats.outliers);
-    tell_noise(plan, &result.stats.noise);
-    tell_lambda(plan, &result.stats);
+    tell::outliers(plan.talk, &result.stats.outliers);
+    tell::noise(plan, &result.stats.noise);
+    tell::lambda(plan, &result.stats);
+    tell::outward(plan, &cloud, &result.stats.outward);
 
     report.verdict(plan)?;
     write_results(plan, &result, &product, &report, &cloud)?;
@@ -128,77 +130,35 @@ pub fn read(plan: &Plan) -> Result<Cloud, Failure> {
     Ok(cloud)
 }
 
+/// The surface of points, with what their normals or the scanner say.
+pub fn reconstruct(
+    cloud: &Cloud,
+    seen: (Option<Point>, Normals),
+    options: &Options,
+    context: &Context,
+) -> Result<Reconstruction, Error> {
+    powercrust::reconstruct_seen(&cloud.points, &outward(seen, cloud), options, context)
+}
+
+/// Which way is out at each point: towards the scanner, or along its normal. Empty where nothing
+/// tells.
+fn outward(seen: (Option<Point>, Normals), cloud: &Cloud) -> Vec<Point> {
+    let to = |sensor: Point| cloud.points.iter().map(|p| sub(sensor, *p)).collect();
+    match (seen, &cloud.normals, cloud.viewpoint) {
+        ((Some(sensor), _), ..) => to(sensor),
+        ((None, Normals::Ignore), ..) => Vec::new(),
+        (_, Some(normals), _) => normals.iter().map(|n| n.map(f64::from)).collect(),
+        (_, None, Some(viewpoint)) => to(viewpoint),
+        (_, None, None) => Vec::new(),
+    }
+}
+
 /// What is done about outliers unless the user says: the vertices of a mesh
 /// lie on its surface.
 pub fn usual_outliers(cloud: &Cloud) -> OutlierOption {
     match cloud.report.faces_ignored {
         Some(faces) if faces > 0 => OutlierOption::Keep,
         _ => OutlierOption::Auto,
-    }
-}
-
-/// Says that samples were left out.
-pub fn tell_outliers(talk: Talk, found: &OutlierReport) {
-    if found.left_out > 0 {
-        talk.at(
-            Talk::Plain,
-            format_args!(
-                "note: {} left out as outliers, {} floating in {} and {} beside the surface; --outliers keep keeps them",
-                counted(found.left_out, "sample", "samples"),
-                found.floating,
-                counted(found.groups, "group", "groups"),
-                found.beside
-            ),
-        );
-    }
-}
-
-/// Says which lambda was taken, and why.
-fn tell_lambda(plan: &Plan, stats: &Stats) {
-    let found = &stats.lambda;
-    let line = match (found.lambda, found.chosen) {
-        (Some(lambda), true) => format!(
-            "--lambda auto: {lambda} for {} amid noise of more than {LOUD} of the spacing: {} dropped",
-            counted(found.asked, "sample", "samples"),
-            counted(stats.poles_dropped as usize, "pole", "poles"),
-        ),
-        (Some(lambda), false) => format!(
-            "--lambda {lambda}: {} of {} dropped",
-            counted(stats.poles_dropped as usize, "pole", "poles"),
-            counted(stats.skinny_samples as usize, "sample", "samples"),
-        ),
-        (None, true) => "--lambda auto: every pole kept, for want of noise".to_owned(),
-        (None, false) => return,
-    };
-    plan.talk.at(Talk::Verbose, line);
-}
-
-/// Says that samples were moved, and why or why not.
-fn tell_noise(plan: &Plan, noise: &NoiseReport) {
-    if let Some(level) = &noise.level {
-        plan.talk.at(
-            Talk::Verbose,
-            format_args!(
-                "--noise auto: quadrics through 12 samples miss them by {:.3} of the spacing, those through 24 by {:.2} times as much, through 48 by {:.2} times more: {}",
-                level.share,
-                level.growth,
-                level.further_growth,
-                if level.noisy { "noise" } else { "no noise" }
-            ),
-        );
-    }
-    if noise.treated {
-        plan.talk.at(
-            Talk::Plain,
-            format_args!(
-                "note: noise of {:.3e}, {:.2} of the spacing: {} moved onto a surface through {} neighbours, by {:.3e} on average; --noise off keeps them",
-                noise.scale,
-                noise.share,
-                counted(noise.moved, "sample", "samples"),
-                noise.neighbours,
-                noise.mean_move
-            ),
-        );
     }
 }
 

@@ -21,13 +21,12 @@ use super::formats::{axis_format, dotted};
 use super::output::Target;
 use super::plan::{check_input, identity, out, out_of_range, Out};
 use super::report::in_numbers;
-use super::run::{
-    enough_memory, misread, read_bytes, stage, tell_outliers, unsolved, usual_outliers,
-};
+use super::run::{self, enough_memory, misread, read_bytes, stage, unsolved, usual_outliers};
 use super::show::{counted, Bar, Talk};
 use super::simplify_args::{SimplifyMat, WhichSide, DELTA_OF_EPS, EPS_PERCENT};
 use super::stop;
-use super::wanted::Length;
+use super::tell;
+use super::wanted::{Length, Normals};
 
 pub fn simplify_mat(args: &SimplifyMat) -> Result<ExitCode, Failure> {
     let start = Instant::now();
@@ -267,9 +266,9 @@ fn balls(
                 outliers: usual_outliers(&cloud),
                 ..options.clone()
             };
-            let result =
-                powercrust::reconstruct(&cloud.points, &options, context).map_err(failed)?;
-            tell_outliers(talk, &result.stats.outliers);
+            let result = run::reconstruct(&cloud, (None, Normals::Auto), &options, context)
+                .map_err(failed)?;
+            tell::outliers(talk, &result.stats.outliers);
             Ok((LabelledBalls::of(result, &cloud.points), side))
         }
     }

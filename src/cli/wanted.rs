@@ -4,7 +4,7 @@
 use powercrust::holes::{HoleSize, GROWN};
 use powercrust::io::MeshFormat;
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::{LabelOption, LambdaOption, NoiseOption, OutlierOption};
+use powercrust::{LabelOption, LambdaOption, NoiseOption, OutlierOption, Point};
 
 /// The names of `--attributes` that are not columns of the input.
 pub const OWN: [&str; 9] = [
@@ -260,6 +260,29 @@ pub fn lambda(text: &str) -> Result<LambdaOption, String> {
     }
 }
 
+/// Reads a place: three numbers between commas.
+pub fn place(text: &str) -> Result<Point, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map_while(|w| w.trim().parse().ok())
+        .collect();
+    let place = <[f64; 3]>::try_from(numbers).ok();
+    place
+        .filter(|p| text.matches(',').count() == 2 && p.iter().all(|c| c.is_finite()))
+        .ok_or_else(|| "expected three numbers between commas, such as 0,0,1.5".to_owned())
+}
+
+/// Whether the normals of the input are asked which side is which.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Normals {
+    /// Where they agree with the surface, mostly.
+    #[default]
+    Auto,
+    /// They are carried to the vertices, no more.
+    Ignore,
+}
+
 /// Reads `greedy` or `refined`.
 pub fn label(text: &str) -> Result<LabelOption, String> {
     match text {
@@ -358,6 +381,9 @@ mod tests {
             hole_width("0.5").map(|w| w.of(50.0)),
             Ok(HoleSize::Length(0.5))
         );
+        assert_eq!(place("0, -1,2.5"), Ok([0.0, -1.0, 2.5]));
+        assert!(place("0,1").is_err() && place("0,1,x").is_err() && place("0,1,2,3").is_err());
+        assert!(place("0,1,nan").is_err() && place("0,1,2,x").is_err());
         assert!(hole_width("3x").is_err() && hole_width("0").is_err() && hole_width("x").is_err());
         let list = distances("0.5,-1%, 2").unwrap().0;
         let found: Vec<f64> = list.iter().map(|l| l.of(10.0)).collect();

@@ -30,6 +30,9 @@ pub struct Cloud {
     pub points: Vec<Point>,
     /// Normals as the file has them: not made unit length, may be NaN.
     pub normals: Option<Vec<[f32; 3]>>,
+    /// Where the scanner stood, if the file says so for all points at once (PCD
+    /// does), in the units of the points.
+    pub viewpoint: Option<Point>,
     /// Red, green, blue, alpha; alpha is 255 where the file has none.
     pub colours: Option<Vec<[u8; 4]>>,
     /// Everything else that is one number for each point.
@@ -76,6 +79,7 @@ impl ReadReport {
 /// A cloud under construction: what the readers fill.
 pub(super) struct Parts {
     pub points: Vec<Point>,
+    pub viewpoint: Option<Point>,
     pub normals: Option<Vec<[f32; 3]>>,
     pub colours: Option<Vec<[u8; 4]>>,
     pub scalars: Vec<ScalarColumn>,
@@ -86,6 +90,7 @@ impl Parts {
     pub fn new(format: CloudFormat) -> Parts {
         Parts {
             points: Vec::new(),
+            viewpoint: None,
             normals: None,
             colours: None,
             scalars: Vec::new(),
@@ -147,6 +152,7 @@ impl Parts {
         }
         Ok(Cloud {
             points: self.points,
+            viewpoint: self.viewpoint,
             normals: self.normals,
             colours: self.colours,
             scalars: self.scalars,

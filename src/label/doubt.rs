@@ -1,7 +1,7 @@
 //! Which balls stay torn, and how much: labels to be doubted.
 //!
 //! Evidence is weighed as in [`super::energy`]: opposite poles should differ,
-//! deeply intersecting neighbours agree. The doubt about a ball is the share of its
+//! deeply intersecting neighbours agree, and normals be right. The doubt about a ball is the share of its
 //! evidence that its label goes against: 0 where all agree, at most 1/2
 //! after [`super::refine`]. The surface between an inner and an outer ball is as
 //! doubtful as the more doubtful of both.
@@ -50,6 +50,9 @@ pub fn doubt(
     }
     for (&b, [mut against, mut all]) in odd.iter().zip(weighed) {
         let side = sides[b as usize];
+        let said = evidence.said(b, side);
+        against += (-said).max(0.0);
+        all += said.abs();
         for &q in neighbours.at(b) {
             if let Some(depth) = evidence.depth(b, q, options) {
                 against += if sides[q as usize] != side {
@@ -88,6 +91,7 @@ mod tests {
                 poles: [0, 2],
                 weight: 1.0,
             }],
+            outward: &[],
         };
         let of =
             |sides: [Side; 3]| doubt(&evidence, &neighbours, &sides, &LabelOptions::default()).1;

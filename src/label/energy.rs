@@ -18,12 +18,15 @@ pub struct Energy {
     pub neighbours: f64,
     /// Number of such pairs.
     pub unlike_neighbours: u64,
+    /// Sum of what normals say against the labels of balls; 0 where there are
+    /// none.
+    pub outward: f64,
 }
 
 impl Energy {
     /// The whole energy.
     pub fn total(&self) -> f64 {
-        self.opposites + self.neighbours
+        self.opposites + self.neighbours + self.outward
     }
 }
 
@@ -67,6 +70,13 @@ pub(super) fn at_odds(
     energy.neighbours = unlike.iter().fold(0.0, |sum, (depth, _)| sum + depth);
     energy.unlike_neighbours = unlike.len() as u64;
     odd.extend(unlike.iter().flat_map(|(_, pair)| pair));
+    for b in 0..evidence.outward.len() as u32 {
+        let against = -evidence.said(b, sides[b as usize]);
+        if against > 0.0 {
+            energy.outward += against;
+            odd.push(b);
+        }
+    }
     odd.sort_unstable();
     odd.dedup();
     (energy, odd)

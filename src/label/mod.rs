@@ -13,6 +13,7 @@ mod check;
 mod doubt;
 mod energy;
 mod hold;
+mod outward;
 mod propagate;
 mod queue;
 mod refine;
@@ -23,6 +24,7 @@ pub use check::{check, Finding};
 pub use doubt::{doubt, TORN};
 pub use energy::{energy, Energy};
 pub use hold::{hold, Held, MOST_UNHELD};
+pub use outward::{Agreement, Seen};
 pub use propagate::label;
 pub use refine::refine;
 pub use wind::{wind, Wound};
@@ -60,9 +62,22 @@ pub struct Evidence<'a> {
     /// Pairs of poles of one sample with the weight `-cos angle(p s q)` in
     /// (0, 1]: they should differ.
     pub opposites: &'a [Opposite],
+    /// What normals say of each ball ([`Seen`]): outer where positive. Empty
+    /// where nobody says anything.
+    pub outward: &'a [f32],
 }
 
 impl Evidence<'_> {
+    /// What normals say for a side of a ball, if anything.
+    #[inline]
+    fn said(&self, ball: u32, side: Side) -> f64 {
+        let outward = self.outward.get(ball as usize).copied().unwrap_or(0.0);
+        match side {
+            Side::Outer => f64::from(outward),
+            Side::Inner => -f64::from(outward),
+        }
+    }
+
     /// How deeply two balls intersect, if they do.
     #[inline]
     fn depth(&self, p: u32, q: u32, options: &LabelOptions) -> Option<f64> {

@@ -31,6 +31,7 @@ use crate::geom::Side;
 ///     balls: &balls,
 ///     outer: &[true, false, false],
 ///     opposites: &opposites,
+///     outward: &[],
 /// };
 /// let neighbours = Neighbours::of(&diagram, &Context::default())?;
 /// let labels = label(&evidence, &neighbours, &LabelOptions::default(), &Context::default())?;
@@ -55,6 +56,15 @@ pub fn label(
     };
     for b in (0..count as u32).filter(|&b| evidence.outer[b as usize]) {
         work.raise(b, Side::Outer, 1.0);
+    }
+    for b in 0..evidence.outward.len() as u32 {
+        let outer = evidence.said(b, Side::Outer);
+        let side = if outer > 0.0 {
+            Side::Outer
+        } else {
+            Side::Inner
+        };
+        work.raise(b, side, TRUST * outer.abs().min(1.0));
     }
     let progress = Portion {
         context,
@@ -83,6 +93,9 @@ pub fn label(
         unreached,
     })
 }
+
+/// How much normals are believed; the frame is believed without reserve.
+const TRUST: f64 = 0.9;
 
 /// Balls labelled between two reports of progress.
 const REPORT: usize = 4096;

@@ -27,7 +27,7 @@ pub fn refine(
             return f64::NEG_INFINITY;
         }
         let side = sides[b as usize];
-        let mut gain = 0.0;
+        let mut gain = evidence.said(b, side.opposite());
         for &(q, weight) in partners.at(b) {
             gain += if sides[q as usize] == side {
                 weight

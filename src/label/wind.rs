@@ -4,7 +4,8 @@
 //! leaks, and a whole ear may turn inside out. What lies inside is also told
 //! from afar, by the winding number of the samples around
 //! ([`super::winding`]), once they are oriented. The poles orient them: a
-//! sample looks from its inner to its outer pole. So, in turn: orient the samples by the
+//! sample looks from its inner to its outer pole, or that way of both which its normal, if
+//! believed ([`super::Seen`]), is nearer to. So, in turn: orient the samples by the
 //! labels, take winding numbers at the centres of the balls, and let those balls
 //! change sides that they contradict clearly; until nothing changes.
 //! (Iterating between normals and winding numbers is due to Lin, Shi and Liu, 2024, and finds its way
@@ -18,7 +19,7 @@ use rayon::prelude::*;
 use super::winding::Winding;
 use super::{Evidence, Labels};
 use crate::context::{Cancelled, Context, Stage};
-use crate::geom::vec3::{norm, scale, sub};
+use crate::geom::vec3::{dot, norm, scale, sub};
 use crate::geom::{Point, Side};
 use crate::poles::NO_POLE;
 use crate::predicates::Site;
@@ -54,7 +55,8 @@ pub struct Wound {
 
 /// Lets balls change sides that winding numbers contradict. `of_sample` has
 /// the poles of each sample, `sites` its place, `spacing` the distance to its
-/// neighbours, all in steps of the lattice.
+/// neighbours, all in steps of the lattice; `ways` a vector out of the solid,
+/// zero where none is known, or is empty.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -63,6 +65,7 @@ pub fn wind(
     of_sample: &[[u32; 2]],
     sites: &[Site],
     spacing: &[f64],
+    ways: &[Point],
     labels: &mut Labels,
     context: &Context,
 ) -> Result<Wound, Cancelled> {
@@ -80,8 +83,15 @@ pub fn wind(
     let mut factor = 1.0;
     for round in 0..ROUNDS {
         context.advance(Stage::Labels, 95, 100)?;
-        let dipoles = (of_sample.iter().zip(&axes))
-            .map(|(poles, &axis)| scale(axis, orientation(poles, &labels.sides, &field)))
+        let dipoles = (of_sample.iter().zip(&axes).enumerate())
+            .map(|(s, (poles, &axis))| {
+                let told = ways.get(s).map_or(0.0, |&way| dot(axis, way));
+                let sign = match told == 0.0 {
+                    true => orientation(poles, &labels.sides, &field),
+                    false => told.signum(),
+                };
+                scale(axis, sign)
+            })
             .collect();
         let winding = Winding::of(&places, dipoles, &soft);
         let found: Vec<f64> = (looked_at.par_iter())
@@ -230,6 +240,7 @@ mod tests {
             balls: &balls,
             outer: &outer,
             opposites: &[],
+            outward: &[],
         };
         let spacing = vec![(4.0 * std::f64::consts::PI / 600.0f64).sqrt(); 600];
         let mut labels = truth.clone();
@@ -238,7 +249,7 @@ mod tests {
             labels.sides[b] = labels.sides[b].opposite();
         }
         let cx = Context::default();
-        let wound = wind(&evidence, &poles, &sites, &spacing, &mut labels, &cx).unwrap();
+        let wound = wind(&evidence, &poles, &sites, &spacing, &[], &mut labels, &cx).unwrap();
         assert!(labels.sides == truth.sides);
         assert_eq!(wound.changed, 63);
         assert!(wound.after < wound.before);
@@ -254,12 +265,14 @@ mod tests {
             balls: &balls[..2 * cap],
             outer: &outer[..2 * cap],
             opposites: &[],
+            outward: &[],
         };
         let wound = wind(
             &evidence,
             &poles[..cap],
             &sites[..cap],
             &spacing[..cap],
+            &[],
             &mut labels,
             &cx,
         )

@@ -9,6 +9,7 @@ mod help;
 mod holes;
 mod interrupted;
 mod offset;
+mod outward;
 mod query;
 mod refused;
 

@@ -48,6 +48,30 @@ fn pcd_written_three_ways_is_the_same() {
 }
 
 #[test]
+fn pcd_says_where_the_scanner_stood() {
+    let plain = pcd(XYZ, 1, "ascii", b"1 2 3\n");
+    // What every program writes that knows nothing of it.
+    assert_eq!(read_pcd(&plain).unwrap().viewpoint, None);
+    let with = |line: &str| {
+        let file = String::from_utf8(plain.clone()).unwrap();
+        let file = file.replace("VIEWPOINT 0 0 0 1 0 0 0", line);
+        read_pcd(file.as_bytes()).unwrap().viewpoint
+    };
+    assert_eq!(
+        with("VIEWPOINT 0 -2.5 1e2 1 0 0 0"),
+        Some([0.0, -2.5, 100.0])
+    );
+    for unclear in [
+        "VIEWPOINT",
+        "VIEWPOINT 1 2",
+        "VIEWPOINT 1 x 2",
+        "VIEWPOINT nan 1 2",
+    ] {
+        assert_eq!(with(unclear), None, "{unclear}");
+    }
+}
+
+#[test]
 fn pcd_fields_by_name() {
     let mut body = Vec::new();
     for k in 0..2 {

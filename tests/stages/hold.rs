@@ -160,6 +160,7 @@ fn balls_are_added_for_samples_off_the_crust_and_the_diagram_stays_sound() {
                 balls: &run.balls,
                 outer: &run.poles.balls.touches_frame,
                 opposites: &[],
+                outward: &[],
             };
             assert_eq!(evidence.outer.len(), run.balls.len(), "{name}");
             crate::crust::assert_closed(&name, &run, &labels.sides, &run.apart(&labels.sides));

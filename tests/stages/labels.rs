@@ -183,6 +183,7 @@ fn no_balls_have_no_labels() {
         balls: &run.balls,
         outer: &vec![false; run.balls.len()],
         opposites: &[],
+        outward: &[],
     };
     let options = LabelOptions::default();
     let Labels { sides, unreached } =

@@ -45,6 +45,7 @@ impl Run {
             balls: &balls,
             outer: &poles.balls.touches_frame,
             opposites: &opposites,
+            outward: &[],
         };
         let labels = label(&evidence, &neighbours, &LabelOptions::default(), &context).unwrap();
         Run {
@@ -65,6 +66,7 @@ impl Run {
             balls: &self.balls,
             outer: &self.poles.balls.touches_frame,
             opposites: &self.opposites,
+            outward: &[],
         }
     }
 

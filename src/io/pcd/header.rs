@@ -3,6 +3,7 @@
 use super::super::columns;
 use super::super::error::{Place, ReadError};
 use super::super::scan::{self, Lines, Words};
+use crate::geom::Point;
 
 /// How the points are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +73,9 @@ pub struct Header {
     pub encoding: Encoding,
     /// Bytes of a point.
     pub record: usize,
+    /// Where the scanner stood, if that is said: at the origin, which every program
+    /// writes that knows nothing of it, says nothing.
+    pub viewpoint: Option<Point>,
 }
 
 /// Whether a file starts like PCD.
@@ -152,6 +156,7 @@ impl Header {
             Header {
                 record: record.max(1),
                 points: points(&entry)?,
+                viewpoint: entry(b"VIEWPOINT").and_then(viewpoint),
                 fields,
                 encoding,
             },
@@ -171,6 +176,16 @@ fn missing(key: &str) -> ReadError {
     ReadError::Missing {
         what: format!("{key} line in the header of this PCD file"),
     }
+}
+
+/// The place in a VIEWPOINT line: three numbers, before the four of a rotation.
+fn viewpoint(entry: &Entry) -> Option<Point> {
+    let mut place = [0.0; 3];
+    for (k, slot) in place.iter_mut().enumerate() {
+        *slot = scan::number(entry.words.get(k)?)?;
+    }
+    let said = place.iter().all(|c| c.is_finite()) && place != [0.0; 3];
+    said.then_some(place)
 }
 
 /// A line of the header.

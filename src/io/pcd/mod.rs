@@ -118,6 +118,7 @@ impl Columns {
             single(&["normal_z", "nz"]),
         ];
         let mut parts = Parts::new(CloudFormat::Pcd);
+        parts.viewpoint = header.viewpoint;
         if let [Some(x), Some(y), Some(z)] = normals {
             for (k, at) in [x, y, z].into_iter().enumerate() {
                 targets[at] = Target::Normal(k);
