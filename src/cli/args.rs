@@ -282,12 +282,15 @@ pub struct Reconstruct {
     pub drop_cavities: bool,
 
     /// What becomes of places where nothing was sampled: `keep` bridges them
-    /// (the default), `open` leaves them out.
+    /// (the default), `open` leaves them out, `fill` bridges them as flat as
+    /// their border allows.
     ///
     /// With `open` the mesh is manifold and oriented, and has a border. Every
     /// loop of it is told by -v, --stats and --json with its length and area.
     /// Scans of one side, terrain and rooms, which bound no solid, come out as
-    /// what was seen.
+    /// what was seen. With `fill` vertices that are no samples move onto a
+    /// membrane across the border; where its faces would cross others they stop on
+    /// the way, and the summary says so.
     #[arg(long, value_name = "HOW", value_enum, help_heading = SURFACE)]
     pub holes: Option<Holes>,
 

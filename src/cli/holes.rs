@@ -1,6 +1,6 @@
 //! What is said of places where nothing was sampled.
 
-use powercrust::holes::{Holes, Loop};
+use powercrust::holes::{Filled, Holes, Loop};
 use serde_json::{json, Value};
 
 use super::plan::Plan;
@@ -33,11 +33,15 @@ pub fn in_full(plan: &Plan, product: &Product) -> Value {
         };
         object["loops"] = loops.iter().map(with_area).collect();
     }
+    if let Some(filled) = &product.filled {
+        object["filled"] = json!(filled.shares);
+        object["farthest"] = json!(filled.farthest);
+    }
     object
 }
 
 /// For the summary line.
-pub fn in_short(holes: &Holes, border: Option<&[Loop]>) -> Option<String> {
+pub fn in_short(holes: &Holes, border: Option<&[Loop]>, filled: Option<&Filled>) -> Option<String> {
     let percent = 100.0 * holes.share;
     let many = counted(holes.patches.len(), "hole", "holes");
     match border {
@@ -45,6 +49,20 @@ pub fn in_short(holes: &Holes, border: Option<&[Loop]>) -> Option<String> {
             "{many} left open ({percent:.1} % of the surface), {}",
             counted(loops.len(), "border loop", "border loops")
         )),
+        None if filled.is_some() => {
+            let short = filled.map_or(0, |f| f.shares.iter().filter(|&&s| s < 1.0).count());
+            let not_all = match short {
+                0 => String::new(),
+                _ => format!("; {short} not all the way, faces would cross"),
+            };
+            let sheet = match holes.share >= NO_SOLID {
+                true => "the samples do not surround a solid: ",
+                false => "",
+            };
+            Some(format!(
+                "{sheet}{many} filled ({percent:.1} % of the surface{not_all})"
+            ))
+        }
         None if holes.share >= NO_SOLID => Some(format!(
             "the samples do not surround a solid: {percent:.0} % of the surface bridges missing data, --holes open leaves it out"
         )),
@@ -56,7 +74,7 @@ pub fn in_short(holes: &Holes, border: Option<&[Loop]>) -> Option<String> {
 }
 
 /// The largest holes and longest loops, for `-v`.
-pub fn tell(plan: &Plan, holes: &Holes, border: Option<&[Loop]>) {
+pub fn tell(plan: &Plan, holes: &Holes, border: Option<&[Loop]>, filled: Option<&Filled>) {
     let say = |text: String| plan.talk.at(Talk::Verbose, text);
     let place = |p: [f64; 3]| format!("({:.4}, {:.4}, {:.4})", p[0], p[1], p[2]);
     for (k, patch) in holes.patches.iter().enumerate().take(MOST) {
@@ -67,6 +85,19 @@ pub fn tell(plan: &Plan, holes: &Holes, border: Option<&[Loop]>) {
             patch.area,
             counted(patch.faces, "face", "faces"),
             place(patch.centre)
+        ));
+    }
+    if let Some(filled) = filled {
+        for (k, share) in filled.shares.iter().enumerate().take(MOST) {
+            say(format!(
+                "hole {k} filled: {:.0} % of the way to a membrane",
+                100.0 * share
+            ));
+        }
+        say(format!(
+            "filling moved {}, the farthest by {:.4}",
+            counted(filled.vertices.len(), "vertex", "vertices"),
+            filled.farthest
         ));
     }
     if holes.patches.len() > MOST {

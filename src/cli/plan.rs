@@ -116,6 +116,12 @@ impl Plan {
             stats: out(&args.stats, |_| Ok(()))?,
             ..plan
         };
+        if plan.holes == Holes::Fill && plan.options.faces == Faces::Polygons {
+            return Err(Failure::usage(
+                "--holes fill and --polygons: polygons would not stay flat",
+            )
+            .hint("leave --polygons out"));
+        }
         plan.check_places()?;
         plan.check_idle_flags(&args)?;
         Ok(plan)
@@ -181,6 +187,7 @@ impl Plan {
             of(&self.outer_axis),
             of(&self.poles),
             of(&self.outliers),
+            of(&self.dropped),
             of(&self.stats),
         ]
         .into_iter()

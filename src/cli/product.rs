@@ -1,7 +1,8 @@
 //! From the reconstruction to the mesh that is written: shells dropped,
 //! triangles reduced, values attached.
 
-use powercrust::holes::{Holes, Loop};
+use powercrust::geom::vec3::{add, cross, norm, scale, sub};
+use powercrust::holes::{Filled, Holes, Loop};
 use powercrust::io::{Attribute, AttributeValues, Cloud, MeshAttributes};
 use powercrust::mesh::{decimate, deviation, DecimateError, Deviation};
 use powercrust::surface::{filter_shells, Selection, Shells, NONE};
@@ -154,6 +155,26 @@ impl Carried {
         }
     }
 
+    /// Takes the normals of these vertices, which moved, from the faces around.
+    fn turn(&mut self, moved: &[u32], crust: &Crust) {
+        let (Some(normals), false) = (&mut self.normals, moved.is_empty()) else {
+            return;
+        };
+        let mut sums = vec![[0.0; 3]; moved.len()];
+        for face in crust.mesh.faces() {
+            let corners = face.iter().filter_map(|v| moved.binary_search(v).ok());
+            let [a, b, c] = [0, 1, 2].map(|k| crust.mesh.vertices[face[k] as usize]);
+            let area = cross(sub(b, a), sub(c, a));
+            corners.for_each(|k| sums[k] = add(sums[k], area));
+        }
+        for (&v, sum) in moved.iter().zip(sums) {
+            let length = norm(sum);
+            if length > 0.0 && length.is_finite() {
+                normals[v as usize] = scale(sum, 1.0 / length).map(|c| c as f32);
+            }
+        }
+    }
+
     /// For the writers.
     pub fn attributes(&self) -> MeshAttributes<'_> {
         fn list(columns: &[(String, Column)]) -> Vec<Attribute<'_>> {
@@ -192,6 +213,8 @@ pub struct Product {
     pub holes: Holes,
     /// The border, if holes were left open.
     pub border: Option<Vec<Loop>>,
+    /// What filling them came to, if they were to be filled.
+    pub filled: Option<Filled>,
 }
 
 /// What reducing the triangles came to.
@@ -214,6 +237,7 @@ pub fn make(
     plan: &Plan,
     cloud: &Cloud,
     result: &mut Reconstruction,
+    single: bool,
     context: &Context,
 ) -> Result<Product, Failure> {
     let before = Shells::of(&result.crust.mesh);
@@ -250,8 +274,17 @@ pub fn make(
             Some(reduced)
         }
     };
+    let mut filled = None;
     let border = match plan.holes {
         wanted::Holes::Keep => None,
+        wanted::Holes::Fill => {
+            let taut = holes.fill(&mut result.crust, single, context);
+            let taut = taut.map_err(|_| Failure::interrupted())?;
+            carried.turn(&taut.vertices, &result.crust);
+            shells = Shells::of(&result.crust.mesh);
+            filled = Some(taut);
+            None
+        }
         wanted::Holes::Open => {
             let opened = holes.open(&result.crust);
             if opened.crust.mesh.face_count() == 0 {
@@ -269,6 +302,7 @@ pub fn make(
     Ok(Product {
         holes,
         border,
+        filled,
         carried,
         before,
         shells,

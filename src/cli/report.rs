@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use powercrust::holes::{Holes, Loop};
+use powercrust::holes::{Filled, Holes, Loop};
 use powercrust::io::{as_written, Cloud, MeshFormat};
 use powercrust::mesh::{check, CheckOptions, Report as Findings};
 use powercrust::surface::ShellFilter;
@@ -26,6 +26,7 @@ pub struct Report {
     reduced: Option<Reduced>,
     holes: Holes,
     border: Option<Vec<Loop>>,
+    filled: Option<Filled>,
     parts: usize,
     cavities: usize,
     samples: usize,
@@ -75,7 +76,7 @@ pub fn in_numbers(shape: &PowerShape) -> Value {
 /// Whether a mesh is what the plan asks for, by exact judgement.
 fn is_sound(findings: &Findings, plan: &Plan) -> bool {
     match plan.holes {
-        wanted::Holes::Keep => findings.is_watertight(),
+        wanted::Holes::Keep | wanted::Holes::Fill => findings.is_watertight(),
         wanted::Holes::Open => findings.is_bordered(),
     }
 }
@@ -189,6 +190,7 @@ impl Report {
             findings,
             holes: product.holes.clone(),
             border: product.border.clone(),
+            filled: product.filled.clone(),
             samples: result.stats.samples,
             stages: result.stats.seconds.clone(),
             inner_axis,
@@ -241,7 +243,12 @@ impl Report {
             let line = format_args!("{stage:>10} {seconds:8.3} s");
             plan.talk.at(Talk::Verbose, line);
         }
-        holes::tell(plan, &self.holes, self.border.as_deref());
+        holes::tell(
+            plan,
+            &self.holes,
+            self.border.as_deref(),
+            self.filled.as_ref(),
+        );
         plan.talk.at(Talk::Debug, format_args!("{:#}", self.stats));
         plan.talk.at(Talk::Plain, self.line(plan, seconds));
         if plan.json {
@@ -269,7 +276,11 @@ impl Report {
         if let Some(genus) = found.genus {
             parts.push(format!("genus {genus}"));
         }
-        parts.extend(holes::in_short(&self.holes, self.border.as_deref()));
+        parts.extend(holes::in_short(
+            &self.holes,
+            self.border.as_deref(),
+            self.filled.as_ref(),
+        ));
         if let Some(reduced) = &self.reduced {
             let moved = 100.0 * reduced.moved.mean_of_diagonal;
             parts.push(format!("moved by {moved:.2e} % of the diagonal"));

@@ -67,7 +67,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
             if plan.inner_axis.is_none() && plan.outer_axis.is_none() {
                 result.power.complex = Complex::default();
             }
-            let product = product::make(plan, &cloud, &mut result, &context)?;
+            let product = product::make(plan, &cloud, &mut result, options.single, &context)?;
             let report = Report::new(plan, &result, &product, &cloud, &context)
                 .map_err(|_| Failure::interrupted())?;
             Ok((result, product, report))

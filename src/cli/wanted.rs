@@ -146,6 +146,9 @@ pub enum Holes {
     Keep,
     /// They are left out: the mesh has a border.
     Open,
+    /// They are bridged, and the bridges drawn taut, as flat as their border
+    /// allows.
+    Fill,
 }
 
 /// From which width on a gap is a hole.

@@ -26,8 +26,9 @@
 //! `docs/holes.md` has the figures.
 //!
 //! **Without them** the crust is an oriented manifold with a border: see
-//! [`Holes::open`].
+//! [`Holes::open`]. **Drawn taut** it stays closed: see [`Holes::fill`].
 
+mod fill;
 mod open;
 mod patches;
 mod width;
@@ -35,6 +36,7 @@ mod width;
 #[cfg(test)]
 mod tests;
 
+pub use fill::Filled;
 pub use open::{Loop, Opened};
 pub use patches::{Holes, Patch};
 

@@ -94,6 +94,104 @@ fn the_size_decides() {
     near(opened.loops[1].length, 2.0 * PI * 0.312, 0.03);
 }
 
+#[test]
+fn a_cap_that_is_missing_is_filled_flat() {
+    let mut result = made(&zone(-1.0, 0.8, 3000));
+    let holes = result.holes(HoleSize::default());
+    let before = result.crust.clone();
+    let filled = holes
+        .fill(&mut result.crust, false, &Context::default())
+        .unwrap();
+    assert_eq!(filled.shares, [1.0]);
+    let (old, new) = (&before.mesh.vertices, &result.crust.mesh.vertices);
+    for (v, (old, new)) in old.iter().zip(new).enumerate() {
+        let moved = filled.vertices.binary_search(&(v as u32)).is_ok();
+        assert_eq!(moved, old != new);
+        assert!(!moved || before.vertex_samples[v] == NONE);
+        assert!(!moved || (new[2] - 0.8).abs() < 0.01, "{new:?}");
+    }
+    let mesh = &result.crust.mesh;
+    let report = check(mesh, &CheckOptions::default(), &Context::default()).unwrap();
+    assert!(report.is_watertight());
+    // The sphere less the cap of height 0.2.
+    let cap = PI * 0.04 * (3.0 - 0.2) / 3.0;
+    near(report.volume, 4.0 / 3.0 * PI - cap, 0.01);
+    // Rounded to 32 bits, on request.
+    let round = |p: &Point| p.map(|c| f64::from(c as f32));
+    let mut single = before.clone();
+    single.mesh.vertices = old.iter().map(round).collect();
+    holes.fill(&mut single, true, &Context::default()).unwrap();
+    let rounded: Vec<Point> = single.mesh.vertices.iter().map(round).collect();
+    assert_eq!(rounded, single.mesh.vertices);
+}
+
+/// A cube with a tent on it, the apex to be drawn down, and a cavity that
+/// reaches up into the tent: half the way is free.
+#[test]
+fn filling_stops_before_faces_cross() {
+    let mut mesh = PolygonMesh::with_vertices(vec![
+        [-1.0, -1.0, 0.0],
+        [1.0, -1.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [-1.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, -1.0],
+    ]);
+    for k in 0..4 {
+        mesh.push_face(&[k, (k + 1) % 4, 4]);
+        mesh.push_face(&[(k + 1) % 4, k, 5]);
+    }
+    let tent = PolygonMesh {
+        vertices: [
+            mesh.vertices.clone(),
+            vec![
+                [0.1, 0.0, -0.1],
+                [-0.1, 0.1, -0.1],
+                [-0.1, -0.1, -0.1],
+                [0.0, 0.0, 0.3],
+            ],
+        ]
+        .concat(),
+        ..mesh.clone()
+    };
+    let crust = |mut mesh: PolygonMesh, cavity: bool| {
+        if cavity {
+            for face in [[6, 7, 8], [6, 9, 7], [7, 9, 8], [8, 9, 6]] {
+                mesh.push_face(&face);
+            }
+        }
+        let mut vertex_samples: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+        vertex_samples[4] = NONE;
+        Crust {
+            vertex_samples,
+            face_balls: vec![[0, 1]; mesh.face_count()],
+            mesh,
+        }
+    };
+    let fill = |mut crust: Crust| {
+        let mut patch_of_face = vec![NONE; crust.mesh.face_count()];
+        (0..4).for_each(|k| patch_of_face[2 * k] = 0);
+        let holes = Holes {
+            patches: vec![Patch {
+                width: 1.0,
+                spacings: 10.0,
+                area: 1.0,
+                faces: 4,
+                centre: [0.0; 3],
+            }],
+            patch_of_face,
+            share: 0.25,
+        };
+        let filled = holes.fill(&mut crust, false, &Context::default()).unwrap();
+        (filled, crust.mesh.vertices[4])
+    };
+    let (filled, apex) = fill(crust(mesh, false));
+    assert_eq!((&filled.shares[..], apex[2]), (&[1.0][..], 0.0));
+    let (filled, apex) = fill(crust(tent, true));
+    assert_eq!((&filled.shares[..], apex[2]), (&[0.5][..], 0.5));
+    assert_eq!((filled.farthest, &filled.vertices[..]), (0.5, &[4][..]));
+}
+
 /// A third of a sphere, seen from one side: what comes out is the sheet.
 #[test]
 fn a_sheet_stays_a_sheet() {

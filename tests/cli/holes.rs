@@ -85,6 +85,59 @@ fn a_hole_is_left_open() {
 }
 
 #[test]
+fn a_hole_is_filled() {
+    let place = Place::new();
+    place.put("cup.xyz", cup(2000, 60));
+    for options in [
+        "-o a.ply",
+        "-o a.stl",
+        "-o a.ply --f32",
+        "-o a.ply --faces 500",
+        "-o a.ply --attributes all",
+    ] {
+        let ran = place
+            .run(&format!("cup.xyz {options} --holes fill --verify"))
+            .code(DONE);
+        ran.says("1 hole filled (").says("verified");
+    }
+    // Across a wavy rim the crust bulges.
+    let wavy = cup(2000, 0);
+    let wavy = wavy.lines().filter(|line| {
+        let p: Vec<f64> = line.split(' ').map(|w| w.parse().unwrap()).collect();
+        p[2] < 0.5 + 0.2 * (2.0 * p[1].atan2(p[0])).cos()
+    });
+    let wavy: String = wavy.map(|line| format!("{line}\n")).collect();
+    place.put("cup.xyz", wavy);
+    let told = |how: &str| {
+        let ran = place.run(&format!("cup.xyz -o b.ply --holes {how} --json -v"));
+        let ran = ran.code(DONE);
+        if how == "fill" {
+            return ran.says("hole 0 filled: 100 % of the way").json();
+        }
+        ran.json()
+    };
+    let (keep, fill) = (told("keep"), told("fill"));
+    assert_eq!(fill["mesh"]["closed"], true);
+    assert_eq!(fill["holes"]["filled"], serde_json::json!([1.0]));
+    // Taut faces have less area.
+    let area = |told: &serde_json::Value| told["mesh"]["area"].as_f64().unwrap();
+    assert!(
+        area(&fill) < area(&keep) - 1e-4,
+        "{} {}",
+        area(&fill),
+        area(&keep)
+    );
+    place
+        .run("cup.xyz -o c.ply --holes fill --polygons")
+        .fails(USAGE, "--polygons");
+    // Nothing to fill: as ever.
+    let place = Place::with_torus();
+    place.run("torus.xyz -o a.ply --holes fill").code(DONE);
+    place.run("torus.xyz -o b.ply").code(DONE);
+    assert_eq!(place.get("a.ply"), place.get("b.ply"));
+}
+
+#[test]
 fn open_meshes_take_the_other_options() {
     let place = Place::new();
     place.put("cup.xyz", cup(1500, 50));

@@ -117,6 +117,9 @@ fn two_results_in_one_place() {
         .run("torus.xyz -o a.ply --mat ./a.ply")
         .fails(USAGE, "two results");
     place
+        .run("torus.xyz -o a.ply --report-poles ./a.ply")
+        .fails(USAGE, "two results");
+    place
         .run("torus.xyz -o - --stats -")
         .fails(USAGE, "more than one result would go to standard output");
     let ran = place.run("torus.xyz -o - --json").code(USAGE);
