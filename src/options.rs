@@ -29,7 +29,7 @@ pub struct Options {
     /// Balls are merged when the surface moves by less than this share of the
     /// sampling error (fact F6); in [0, 1], 0 merges identical balls only.
     pub merge: f64,
-    /// Polygons as the power diagram has them, or triangles.
+    /// Polygons as the power diagram has them, triangles, or none.
     pub faces: Faces,
     /// Whether the surface must pass through every sample, as far as balls
     /// can be found that make it. `None`: unless so many samples are off it
@@ -108,6 +108,10 @@ pub enum Faces {
     Triangles,
     /// The polygons between cells.
     Polygons,
+    /// None: for those who want the balls only, the surface is not made
+    /// ([`Reconstruction::crust`](crate::Reconstruction::crust) is empty). Labels are as found, also of balls that
+    /// a surface in want of mending would have changed (`stats.relabelled`).
+    None,
 }
 
 impl Default for Options {

@@ -14,7 +14,7 @@ use crate::label::{
 };
 use crate::memory;
 use crate::noise::{outliers, treat, Stray};
-use crate::options::{LabelOption, Options, OutlierOption};
+use crate::options::{Faces, LabelOption, Options, OutlierOption};
 use crate::poles::{poles, BallLattice, Bound, DroppedPole, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
@@ -332,7 +332,11 @@ fn run(
         power: &power,
         options,
     };
-    let mut crust = job.run(&mut sides, &mut stats, context)?;
+    let mut crust = match options.faces {
+        Faces::None if stats.inner_balls == 0 => return Err(job.nothing()),
+        Faces::None => Crust::default(),
+        _ => job.run(&mut sides, &mut stats, context)?,
+    };
     let strays = drop_strays(&mut crust);
     (stats.inverted_shells, stats.specks) = (strays.inverted, strays.specks);
     if strays.inverted + strays.specks > 0 {

@@ -6,7 +6,7 @@ use common::shapes::{Cuboid, Shape, TORUS, UNIT_SPHERE};
 use powercrust::axis::{simplify, skeleton, structure, LabelledBalls, Simplified, SimplifyOptions};
 use powercrust::geom::vec3::dist_sq;
 use powercrust::io::{read_axis, write_axis, AxisFormat, WriteOptions};
-use powercrust::{reconstruct, Ball, Context, Options, Point, PowerShape, Side};
+use powercrust::{reconstruct, Ball, Context, Faces, Options, Point, PowerShape, Side};
 
 /// About evenly spread over the torus of radii 1 and 0.4.
 fn torus(count: usize) -> Vec<Point> {
@@ -387,5 +387,32 @@ fn skeletons_are_curves_of_the_same_topology() {
         assert!(edges <= axis.edges.len(), "{edges} of {}", axis.edges.len());
         // A graph in one piece.
         assert_eq!(edges + 1, balls + tunnels as usize);
+    }
+}
+
+/// The balls are the same whether a surface is made or not.
+#[test]
+fn balls_need_no_surface() {
+    let points = torus(900);
+    let none = Options {
+        faces: Faces::None,
+        ..Options::default()
+    };
+    let with = reconstruct(&points, &Options::default(), &Context::default()).unwrap();
+    let without = reconstruct(&points, &none, &Context::default()).unwrap();
+    assert_eq!(without.crust.mesh.face_count(), 0);
+    assert_eq!(with.stats.relabelled, 0);
+    assert_eq!(with.balls, without.balls);
+    let axis = |result| LabelledBalls::of(result, &points).shape(Side::Inner);
+    assert_eq!(axis(with), axis(without));
+    // A surface with nothing inside is none either way.
+    let flat: Vec<Point> = (0..64)
+        .map(|k| [f64::from(k % 8), f64::from(k / 8), 0.0])
+        .collect();
+    for options in [Options::default(), none] {
+        let error = reconstruct(&flat, &options, &Context::default()).unwrap_err();
+        let said = error.to_string();
+        let plain = reconstruct(&flat, &Options::default(), &Context::default()).unwrap_err();
+        assert_eq!(said, plain.to_string());
     }
 }

@@ -11,7 +11,7 @@ use powercrust::io::{
     MeshAttributes, MeshFormat, ReadOptions, WriteOptions,
 };
 use powercrust::memory::{estimate, of_machine};
-use powercrust::{Context, Error, LambdaOption, Options, Point, PolygonMesh, Side};
+use powercrust::{Context, Error, Faces, LambdaOption, Options, Point, PolygonMesh, Side};
 use serde_json::json;
 
 use super::balls::{judged, named, Input};
@@ -236,6 +236,7 @@ fn axis(
             enough_memory(&args.input, &estimate(cloud.points.len()), limit)?;
             let options = Options {
                 outliers: usual_outliers(&cloud),
+                faces: Faces::None,
                 ..options
             };
             let result = run::reconstruct(&cloud, (None, Normals::Auto), &options, context);

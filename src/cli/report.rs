@@ -261,7 +261,7 @@ impl Report {
     fn line(&self, plan: &Plan, seconds: f64) -> String {
         let place = self.place(plan);
         let (one, many) = match plan.options.faces {
-            Faces::Triangles => ("triangle", "triangles"),
+            Faces::Triangles | Faces::None => ("triangle", "triangles"),
             Faces::Polygons => ("polygon", "polygons"),
         };
         let found = &self.findings;

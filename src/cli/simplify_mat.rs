@@ -12,7 +12,7 @@ use powercrust::io::{
     read_axis, read_cloud, write_axis_parts, AxisFormat, CloudFormat, ReadOptions, WriteOptions,
 };
 use powercrust::memory::{estimate, of_machine};
-use powercrust::{Context, Error, LambdaOption, Options, PowerShape, Side};
+use powercrust::{Context, Error, Faces, LambdaOption, Options, PowerShape, Side};
 use serde_json::json;
 
 use super::balls::{judged, named, Input};
@@ -264,6 +264,7 @@ fn balls(
             enough_memory(&args.input, &estimate(cloud.points.len()), limit)?;
             let options = Options {
                 outliers: usual_outliers(&cloud),
+                faces: Faces::None,
                 ..options.clone()
             };
             let result = run::reconstruct(&cloud, (None, Normals::Auto), &options, context)

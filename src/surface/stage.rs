@@ -60,7 +60,8 @@ impl Job<'_> {
         Err(self.nothing())
     }
 
-    fn nothing(&self) -> Error {
+    /// That there is no inner ball.
+    pub fn nothing(&self) -> Error {
         Error::NothingInside {
             samples: self.samples.len(),
         }
@@ -149,7 +150,7 @@ impl Job<'_> {
         }
         let how = MendOptions {
             flatness: match options.faces {
-                Faces::Triangles => options.flatness,
+                Faces::Triangles | Faces::None => options.flatness,
                 Faces::Polygons => 0.0,
             },
             tolerance: None,
