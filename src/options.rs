@@ -74,8 +74,8 @@ pub enum NoiseOption {
     Auto,
     /// Nothing: the surface goes through the samples.
     Off,
-    /// Noise of this standard deviation, in the input's unit, positive and
-    /// finite.
+    /// Noise of this standard deviation, in the input's unit, positive and less than half
+    /// the largest side of the box of the points.
     Scale(f64),
 }
 

@@ -14,7 +14,7 @@ use crate::label::{
 };
 use crate::memory;
 use crate::noise::{outliers, treat, Stray};
-use crate::options::{Faces, LabelOption, Options, OutlierOption};
+use crate::options::{Faces, LabelOption, NoiseOption, Options, OutlierOption};
 use crate::poles::{poles, BallLattice, Bound, DroppedPole, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
@@ -191,6 +191,7 @@ fn run(
     if options.single {
         resolves(&samples.lattice)?;
     }
+    noise_fits(options, &samples.lattice)?;
     clock.lap(Stage::Samples, &mut stats);
 
     let mut left_out = Vec::new();
@@ -417,6 +418,20 @@ fn in_user_units(mut dropped: Vec<DroppedPole>, lattice: &Lattice) -> Vec<Droppe
     dropped
 }
 
+/// Whether noise of the scale told, if any, leaves something to see.
+fn noise_fits(options: &Options, lattice: &Lattice) -> Result<(), Error> {
+    match options.noise {
+        NoiseOption::Scale(value) if value > lattice.length_to_user(lattice.sample_half) => {
+            Err(Error::Option {
+                name: "noise",
+                value,
+                expected: "less than half the largest side of the points' box",
+            })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Whether 32-bit coordinates tell a hundred places apart across the samples.
 fn resolves(lattice: &Lattice) -> Result<(), Error> {
     let half = lattice.length_to_user(lattice.sample_half);
@@ -460,6 +475,29 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn noise_wider_than_the_cloud_is_refused() {
+        let points: Vec<Point> = (0..27)
+            .map(|k| [k % 3, k / 3 % 3, k / 9].map(f64::from))
+            .collect();
+        let run = |scale| {
+            let options = Options {
+                noise: NoiseOption::Scale(scale),
+                ..Options::default()
+            };
+            reconstruct(&points, &options, &Context::default())
+        };
+        for scale in [1.001, 1e300] {
+            let error = run(scale).unwrap_err();
+            assert!(
+                matches!(error, Error::Option { name: "noise", .. }),
+                "{error}"
+            );
+        }
+        let stats = run(0.01).unwrap().stats;
+        assert!(stats.noise.share.is_finite());
+    }
 
     #[test]
     fn single_precision_far_from_the_origin_is_refused() {
