@@ -324,6 +324,10 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
 
 /// An option out of range, by the name of its flag.
 pub fn out_of_range(name: &str, value: f64, expected: &str) -> Failure {
+    let value = match value.abs() {
+        0.0 | 1e-5..1e15 => value.to_string(),
+        _ => format!("{value:e}"),
+    };
     Failure::usage(format!(
         "--{} is {value}: expected {expected}",
         name.replace('_', "-")

@@ -111,6 +111,16 @@ fn input_is_never_overwritten() {
 }
 
 #[test]
+fn noise_wider_than_the_cloud() {
+    Place::with_torus()
+        .run("torus.xyz -o a.ply --noise 1e300")
+        .fails(
+            USAGE,
+            "--noise is 1e300: expected less than half the largest side",
+        );
+}
+
+#[test]
 fn two_results_in_one_place() {
     let place = Place::with_torus();
     place
