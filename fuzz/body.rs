@@ -6,7 +6,7 @@ use powercrust::io::{
     MeshAttributes, MeshFormat, ReadOptions, WriteOptions,
 };
 use powercrust::mesh::{check, CheckOptions, PolygonMesh};
-use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point};
+use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point, SharpOption};
 
 /// Names of the targets; seeds lie in folders of these names.
 #[allow(dead_code)]
@@ -149,7 +149,11 @@ fn pipeline(bytes: &[u8]) {
         single: choice & 8 != 0 && unit > 1e-20 && unit < 1e20,
         ..Options::default()
     };
-    options.sharp = choice & 4 != 0 && options.lambda.is_given();
+    options.sharp = match (choice & 4 != 0, options.lambda.is_given()) {
+        (true, true) => SharpOption::Skinny,
+        (true, false) => SharpOption::Auto,
+        _ => SharpOption::Off,
+    };
     if choice & 16 != 0 {
         options.faces = Faces::Polygons;
     }

@@ -20,7 +20,7 @@
 //!
 //! **The whole way**
 //! - [`reconstruct`], [`reconstruct_seen`]: points in, [`Reconstruction`] out
-//! - [`Options`], [`Faces`], [`LabelOption`], [`LambdaOption`], [`NoiseOption`], [`OutlierOption`]: what may be said; the default says nothing
+//! - [`Options`], [`Faces`], [`LabelOption`], [`LambdaOption`], [`NoiseOption`], [`OutlierOption`], [`SharpOption`]: what may be said; the default says nothing
 //! - [`Context`], [`Progress`], [`Silent`], [`Stage`], [`Cancelled`]: threads, progress, a stop button
 //! - [`Error`], [`SampleError`]: why there is no surface
 //! - [`Stats`]: counts, timings, options of a run
@@ -38,6 +38,7 @@
 //! - [`noise::outliers`]: samples on no surface
 //! - [`noise::treat`]: samples amid noise moved onto the surface
 //! - [`delaunay::delaunay`]: their Delaunay triangulation
+//! - [`noise::corners`]: samples at sharp edges
 //! - [`poles::poles`]: poles and polar balls, the skinniness test
 //! - [`simplify::merge_redundant`]: one ball for many that say the same
 //! - [`power::power_diagram`]: the regular triangulation of balls
@@ -106,7 +107,9 @@ pub use context::{Cancelled, Context, Progress, Silent, Stage};
 pub use error::{Error, SampleError};
 pub use geom::{Ball, Bounds, Point, Side};
 pub use mesh::PolygonMesh;
-pub use options::{Faces, LabelOption, LambdaOption, NoiseOption, Options, OutlierOption};
+pub use options::{
+    Faces, LabelOption, LambdaOption, NoiseOption, Options, OutlierOption, SharpOption,
+};
 pub use pipeline::{reconstruct, reconstruct_seen, PolarBall, Reconstruction};
 pub use stats::Stats;
 pub use surface::{Crust, PowerShape};

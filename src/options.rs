@@ -7,10 +7,9 @@ use crate::error::Error;
 pub struct Options {
     /// Which poles are dropped for the shape of their cells (section 6.1).
     pub lambda: LambdaOption,
-    /// Drop both poles of a sample whose cell fails the skinniness test
-    /// (section 6.2), so that faces extend to sharp edges. Needs a value of
-    /// `lambda`.
-    pub sharp: bool,
+    /// Whether both poles of samples at sharp edges are dropped (section 6.2),
+    /// so that faces extend to the edges, and what tells such samples.
+    pub sharp: SharpOption,
     /// Whether samples amid noise are moved onto the surface before anything
     /// else. With [`NoiseOption::Auto`] a cloud that is not noisy gives the
     /// same result, to the last bit, as with [`NoiseOption::Off`].
@@ -66,6 +65,22 @@ impl LambdaOption {
     }
 }
 
+/// Which samples lie at sharp edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SharpOption {
+    /// None: every edge is a little blunt.
+    #[default]
+    Off,
+    /// Those whose cell fails the skinniness test, as in the paper. Needs a
+    /// value of [`Options::lambda`].
+    Skinny,
+    /// Those whose neighbours lie on two or three planes that meet there
+    /// rather than on one smooth surface. A cloud without any gives the same
+    /// result, to the last bit, as with [`SharpOption::Off`].
+    Auto,
+}
+
 /// What to take for noise.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -118,7 +133,7 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             lambda: LambdaOption::Auto,
-            sharp: false,
+            sharp: SharpOption::Off,
             noise: NoiseOption::Auto,
             outliers: OutlierOption::Auto,
             label: LabelOption::Refined,
@@ -164,7 +179,7 @@ impl Options {
             let ok = lambda > 0.0 && lambda <= 1.0;
             within("lambda", lambda, ok, "a number in (0, 1]")?;
         }
-        if self.sharp && !self.lambda.is_given() {
+        if self.sharp == SharpOption::Skinny && !self.lambda.is_given() {
             within("sharp", 1.0, false, "lambda beside it")?;
         }
         if let NoiseOption::Scale(scale) = self.noise {

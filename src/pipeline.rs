@@ -13,8 +13,8 @@ use crate::label::{
     MOST_UNHELD, TORN,
 };
 use crate::memory;
-use crate::noise::{outliers, treat, Stray};
-use crate::options::{Faces, LabelOption, NoiseOption, Options, OutlierOption};
+use crate::noise::{corners, outliers, treat, Stray};
+use crate::options::{Faces, LabelOption, NoiseOption, Options, OutlierOption, SharpOption};
 use crate::poles::{poles, BallLattice, Bound, DroppedPole, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
@@ -232,16 +232,28 @@ fn run(
     // What no later stage reads makes room. The triangulation has the sites.
     delaunay.complex.neighbours = Vec::new();
 
+    // Samples at sharp edges, where told by their neighbours.
+    let corners = match options.sharp {
+        SharpOption::Auto => Some(corners(&samples, stats.noise.treated, context)?),
+        _ => None,
+    };
+    if corners.is_some() {
+        clock.lap(Stage::Noise, &mut stats);
+    }
+
     // 2. Poles; balls that say nothing new are merged (fact F6).
     let (bound, bound_report) = Bound::choose(options.lambda, samples.len(), &noise);
     stats.lambda = bound_report;
     let chosen = PoleOptions {
         bound,
-        sharp: options.sharp,
+        sharp: options.sharp == SharpOption::Skinny,
     };
     let mut poles = poles(&samples, &delaunay, &chosen, context)?;
     stats.skinny_samples = poles.samples_short() as u32;
     stats.poles_dropped = poles.dropped.len() as u32;
+    if let Some(corners) = &corners {
+        (poles, stats.corners) = poles.extended(corners);
+    }
     stats.poles = poles.balls.len();
     let dropped = in_user_units(std::mem::take(&mut poles.dropped), &samples.lattice);
     let (mut poles, spacing) = merge_redundant(&samples, &graph, poles, options.merge, context)?;
@@ -314,8 +326,8 @@ fn run(
     drop((neighbours, pairs, on_lattice));
     let most = match (options.sharp, options.interpolate) {
         (_, Some(true)) => 1.0,
-        (_, Some(false)) | (true, None) => 0.0,
-        (false, None) => MOST_UNHELD,
+        (_, Some(false)) | (SharpOption::Skinny, None) => 0.0,
+        (_, None) => MOST_UNHELD,
     };
     let balls = &mut poles.balls;
     stats.held = hold(&delaunay, balls, &mut power, &mut labels, most, context)?;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::label::{Agreement, Energy, Held, Wound};
 use crate::mesh::Shape;
-use crate::noise::{NoiseReport, OutlierReport};
+use crate::noise::{CornerReport, NoiseReport, OutlierReport};
 use crate::options::Options;
 use crate::poles::BoundReport;
 use crate::predicates::Counts;
@@ -24,6 +24,9 @@ pub struct Stats {
     pub noise: NoiseReport,
     /// Cells of the Delaunay triangulation, frame included.
     pub delaunay_cells: usize,
+    /// What was found and done about sharp edges, with
+    /// [`SharpOption::Auto`](crate::options::SharpOption::Auto).
+    pub corners: CornerReport,
     /// Distinct polar balls chosen.
     pub poles: usize,
     /// The skinniness bound taken.
@@ -119,6 +122,7 @@ impl Stats {
             outliers: OutlierReport::default(),
             noise: NoiseReport::default(),
             delaunay_cells: 0,
+            corners: CornerReport::default(),
             poles: 0,
             lambda: BoundReport::default(),
             skinny_samples: 0,

@@ -4,7 +4,7 @@
 //! `POWERCRUST_SEEDS=2000` runs more seeds; `POWERCRUST_SEED=17` just one.
 
 use powercrust::mesh::{check, CheckOptions, Report};
-use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point};
+use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point, SharpOption};
 use rayon::prelude::*;
 
 /// splitmix64.
@@ -148,10 +148,11 @@ fn options(seed: u64) -> Options {
     let mut options = Options::default();
     match r.below(8) {
         0 => options.lambda = LambdaOption::Value(0.3),
-        1 => (options.lambda, options.sharp) = (LambdaOption::Value(0.4), true),
+        1 => (options.lambda, options.sharp) = (LambdaOption::Value(0.4), SharpOption::Skinny),
         2 => options.single = true,
         3 => options.flatness = 0.0,
         4 => options.faces = Faces::Polygons,
+        5 => options.sharp = SharpOption::Auto,
         _ => {}
     }
     options
@@ -178,7 +179,7 @@ fn fault(seed: u64) -> Option<String> {
         return None;
     }
     Some(format!(
-        "seed {seed} ({kind}, {} points, {:?} single {} flatness {} lambda {:?} sharp {}): left {left} {:?} volume {}",
+        "seed {seed} ({kind}, {} points, {:?} single {} flatness {} lambda {:?} sharp {:?}): left {left} {:?} volume {}",
         points.len(),
         options.faces,
         options.single,

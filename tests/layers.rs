@@ -24,7 +24,10 @@ const ROWS: [(&[&str], &str); 16] = [
         "cells and neighbours; coordinates only through predicates",
     ),
     (&["delaunay"], "samples, and the triangulation of points"),
-    (&["noise"], "samples onto the surface that noise hides"),
+    (
+        &["noise"],
+        "samples onto the surface that noise hides; which lie at edges",
+    ),
     (
         &["power"],
         "the triangulation of balls; takes the formula of centres and the \
@@ -75,9 +78,8 @@ fn home(name: &str) -> &str {
         "Error" | "SampleError" => "error",
         "Ball" | "Bounds" | "Point" | "Side" => "geom",
         "PolygonMesh" => "mesh",
-        "Faces" | "LabelOption" | "LambdaOption" | "NoiseOption" | "Options" | "OutlierOption" => {
-            "options"
-        }
+        "Faces" | "LabelOption" | "LambdaOption" | "NoiseOption" | "Options" | "OutlierOption"
+        | "SharpOption" => "options",
         "reconstruct" | "reconstruct_seen" | "PolarBall" | "Reconstruction" => "pipeline",
         "Stats" => "stats",
         "Crust" | "PowerShape" => "surface",

@@ -12,7 +12,9 @@ use powercrust::poles::{self, poles, Bound, PoleOptions};
 use powercrust::power::{self, power_diagram};
 use powercrust::simplify::merge_redundant;
 use powercrust::surface::{clean, power_shape, raw_crust, triangulate, CleanOptions, Placement};
-use powercrust::{reconstruct, Context, Error, Faces, LambdaOption, Options, Point, Side};
+use powercrust::{
+    reconstruct, Context, Error, Faces, LambdaOption, Options, Point, SharpOption, Side,
+};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -35,7 +37,11 @@ fn options() -> impl Strategy<Value = Options> {
     (lambda, flags, shares).prop_map(
         |(lambda, (sharp, single, polygons, plain), (merge, frame))| Options {
             lambda,
-            sharp: sharp && lambda.is_given(),
+            sharp: match (sharp, lambda.is_given()) {
+                (true, true) => SharpOption::Skinny,
+                (true, false) => SharpOption::Auto,
+                _ => SharpOption::Off,
+            },
             single: single && !polygons,
             faces: if polygons {
                 Faces::Polygons
@@ -96,7 +102,7 @@ fn stages_keep_their_word(points: &[Point], options: &Options) -> Result<(), Tes
     prop_assert_eq!(delaunay::check(&delaunay), vec![]);
     let chosen = PoleOptions {
         bound: Bound::choose(options.lambda, samples.len(), &[]).0,
-        sharp: options.sharp,
+        sharp: options.sharp == SharpOption::Skinny,
     };
     let poles = poles(&samples, &delaunay, &chosen, &context).expect("nobody cancelled");
     if !options.lambda.is_given() {

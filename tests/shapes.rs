@@ -10,7 +10,7 @@ use common::judge::{deviation, samples_off_the_crust, topology, Deviation};
 use common::shapes::{self, Ellipsoid, Shape, Truth};
 use common::{crust, full, polygons};
 use powercrust::geom::vec3::dist_sq;
-use powercrust::{LambdaOption, Options, Point, Reconstruction, Side};
+use powercrust::{LambdaOption, Options, Point, Reconstruction, SharpOption, Side};
 
 /// What is asked of one shape, beyond what is asked of all.
 struct Case<'a> {
@@ -443,7 +443,7 @@ fn sharp_mode_reaches_the_edges_of_a_cube() {
     let plain = crust("plain cube", &points, &polygons());
     let options = Options {
         lambda: LambdaOption::Value(0.4),
-        sharp: true,
+        sharp: SharpOption::Skinny,
         ..polygons()
     };
     let sharp = crust("sharp cube", &points, &options);

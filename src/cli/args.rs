@@ -13,7 +13,7 @@ use super::formats::dotted;
 use super::from_mat_args::{self, FromMat};
 use super::query_args::{self, Query};
 use super::simplify_args::{self, SimplifyMat};
-use super::wanted::{self, Distance, Distances, HoleWidth, Holes, Normals, Wanted};
+use super::wanted::{self, Distance, Distances, HoleWidth, Holes, Normals, Sharp, Wanted};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -183,10 +183,13 @@ pub struct Reconstruct {
 
     /// Extend faces to sharp edges and corners, for machine parts.
     ///
-    /// Drops both poles of a sample whose cell is too fat. Takes --lambda
-    /// 0.4 unless you say otherwise.
-    #[arg(long, help_heading = METHOD)]
-    pub sharp: bool,
+    /// Plain --sharp drops both poles of samples whose cell is too fat, as the
+    /// paper does, with --lambda 0.4 unless you say otherwise. `--sharp auto`
+    /// looks for samples whose neighbours lie on two or three planes that meet
+    /// there, and gives them other poles: it needs no lambda, bears a little
+    /// noise and leaves smooth surfaces as they are.
+    #[arg(long, value_name = "HOW", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "skinny", help_heading = METHOD)]
+    pub sharp: Option<Sharp>,
 
     /// What to take for noise: auto, off, or its standard deviation in the
     /// input's unit.
@@ -252,7 +255,7 @@ pub struct Reconstruct {
     /// At edges the poles of a sample can leave it off the surface; `yes`
     /// adds balls that bring it back. By default that is done unless more
     /// than 5 % of the samples are off, which is taken for noise, and not
-    /// with --sharp. `yes` also keeps the coordinates of samples in planes
+    /// with plain --sharp. `yes` also keeps the coordinates of samples in planes
     /// to the last bit; else they may leave them by 2^-42 of the size.
     #[arg(long, value_name = "WHETHER", value_parser = yes_or_no, help_heading = METHOD)]
     pub interpolate: Option<bool>,
@@ -359,7 +362,8 @@ pub struct Reconstruct {
     /// lies, its sample's number in the input (point), 1 or 2 for the first
     /// or second pole of it (pole), its distance from the sample (radius), the
     /// bound that is held against (bound), and why: reason 0 nearer than the
-    /// bound, 1 the other pole of the sample is.
+    /// bound, 1 the other pole of the sample is, 2 the sample lies at an edge
+    /// (--sharp auto).
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub report_poles: Option<PathBuf>,
 
@@ -502,9 +506,10 @@ pub struct Offset {
     #[arg(long, value_name = "L", value_parser = wanted::lambda, allow_hyphen_values = true, help_heading = METHOD)]
     pub lambda: Option<LambdaOption>,
 
-    /// Extend faces to sharp edges and corners, for machine parts.
-    #[arg(long, help_heading = METHOD)]
-    pub sharp: bool,
+    /// Extend faces to sharp edges and corners, for machine parts: as the
+    /// paper does, or `--sharp auto`.
+    #[arg(long, value_name = "HOW", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "skinny", help_heading = METHOD)]
+    pub sharp: Option<Sharp>,
 
     /// Size of the frame over that of the points' box: 2 to 100, by default
     /// what the largest distance needs, at least 5.

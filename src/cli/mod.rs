@@ -28,21 +28,60 @@ mod stop;
 mod tell;
 mod wanted;
 
+use std::ffi::OsString;
 use std::panic::{catch_unwind, AssertUnwindSafe};
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 
 use args::{Cli, Command};
 use fail::Code;
+use wanted::Sharp;
 
 /// Everything between the arguments and the exit code.
 pub fn main() -> ExitCode {
-    guarded(|| match Cli::try_parse() {
-        Ok(cli) => dispatch(cli),
-        Err(error) => misread(&error),
-    })
+    guarded(
+        || match Cli::try_parse_from(joined(std::env::args_os(), Path::exists)) {
+            Ok(cli) => dispatch(cli),
+            Err(error) => misread(&error),
+        },
+    )
+}
+
+/// `--sharp auto` as the one word `--sharp=auto`: clap reads the value of an
+/// option that may stand alone from one word only, lest `--sharp points.ply`
+/// lose its input. A word of letters that names no file is taken for a value,
+/// so that a wrong one is called wrong.
+fn joined(
+    words: impl IntoIterator<Item = OsString>,
+    exists: impl Fn(&Path) -> bool,
+) -> Vec<OsString> {
+    let is_value = |word: &OsString| {
+        let named = |how: &Sharp| {
+            how.to_possible_value()
+                .is_some_and(|v| word == v.get_name())
+        };
+        let letters = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_ascii_alphabetic());
+        Sharp::value_variants().iter().any(named)
+            || word.to_str().is_some_and(letters) && !exists(Path::new(word))
+    };
+    let mut joined: Vec<OsString> = Vec::new();
+    let mut only_files = false;
+    for word in words {
+        match joined.last_mut() {
+            Some(last) if !only_files && last == "--sharp" && is_value(&word) => {
+                last.push("=");
+                last.push(word);
+            }
+            _ => {
+                only_files |= word == "--";
+                joined.push(word);
+            }
+        }
+    }
+    joined
 }
 
 fn dispatch(cli: Cli) -> ExitCode {
@@ -118,6 +157,26 @@ fn guarded(work: impl FnOnce() -> ExitCode) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_value_of_sharp_may_stand_apart() {
+        let words = |text: &str| text.split(' ').map(OsString::from).collect::<Vec<_>>();
+        for (said, read) in [
+            ("p --sharp auto a.ply", "p --sharp=auto a.ply"),
+            ("p --sharp skinny", "p --sharp=skinny"),
+            ("p --sharp a.ply auto", "p --sharp a.ply auto"),
+            ("p --sharp soft a.ply", "p --sharp=soft a.ply"),
+            ("p --sharp cloud", "p --sharp cloud"),
+            ("p --sharp - -o a.ply", "p --sharp - -o a.ply"),
+            ("p --sharp --f32 auto", "p --sharp --f32 auto"),
+            ("p --sharp=auto auto", "p --sharp=auto auto"),
+            ("p -- --sharp auto", "p -- --sharp auto"),
+            ("auto --sharp", "auto --sharp"),
+        ] {
+            let there = |path: &Path| path == Path::new("cloud");
+            assert_eq!(joined(words(said), there), words(read));
+        }
+    }
 
     #[test]
     fn a_panic_becomes_an_exit_code() {

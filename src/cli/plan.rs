@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use powercrust::holes::DEFAULT_SPACINGS;
 use powercrust::io::{AxisFormat, CloudFormat, MeshFormat, ReadOptions, WriteOptions};
 use powercrust::surface::ShellFilter;
-use powercrust::{Error, Faces, LambdaOption, Options, Point};
+use powercrust::{Error, Faces, LambdaOption, Options, Point, SharpOption};
 
 use super::args::Reconstruct;
 use super::fail::{name, reason, Failure};
@@ -289,13 +289,14 @@ impl Plan {
 fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, Failure> {
     let plain = Options::default();
     let mut lambda = args.lambda.unwrap_or(plain.lambda);
-    if args.sharp && args.lambda.is_none() {
+    let sharp = args.sharp.map_or(plain.sharp, SharpOption::from);
+    if sharp == SharpOption::Skinny && args.lambda.is_none() {
         lambda = LambdaOption::Value(SHARP_LAMBDA);
         decisions.push(format!("--sharp without --lambda: taking {SHARP_LAMBDA}"));
     }
     let options = Options {
         lambda,
-        sharp: args.sharp,
+        sharp,
         noise: args.noise.unwrap_or(plain.noise),
         outliers: args.outliers.unwrap_or(plain.outliers),
         label: args.label.unwrap_or(plain.label),

@@ -49,6 +49,7 @@ pub fn dropped(
     let reason = |why: Reason| match why {
         Reason::Skinny => 0,
         Reason::Sharp => 1,
+        Reason::Corner => 2,
     };
     let reasons: Vec<u8> = poles.iter().map(|p| reason(p.reason)).collect();
     let values = vec![

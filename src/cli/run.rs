@@ -90,6 +90,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     tell::outliers(plan.talk, &result.stats.outliers);
     tell::noise(plan, &result.stats.noise);
     tell::lambda(plan, &result.stats);
+    tell::edges(plan, &result.stats);
     tell::outward(plan, &cloud, &result.stats.outward);
 
     report.verdict(plan)?;

@@ -4,7 +4,7 @@ use powercrust::io::Cloud;
 use powercrust::label::Agreement;
 use powercrust::noise::{NoiseReport, OutlierReport};
 use powercrust::poles::LOUD;
-use powercrust::Stats;
+use powercrust::{SharpOption, Stats};
 
 use super::plan::Plan;
 use super::show::{counted, Talk};
@@ -72,6 +72,22 @@ pub fn lambda(plan: &Plan, stats: &Stats) {
         (None, true) => "--lambda auto: every pole kept, for want of noise".to_owned(),
         (None, false) => return,
     };
+    plan.talk.at(Talk::Verbose, line);
+}
+
+/// Says how many samples lie at sharp edges, where that was asked of their
+/// neighbours.
+pub fn edges(plan: &Plan, stats: &Stats) {
+    if stats.options.sharp != SharpOption::Auto {
+        return;
+    }
+    let found = &stats.corners;
+    let line = format!(
+        "--sharp auto: {} at edges, {} at corners; {} drawn back from edges",
+        counted(found.edges, "sample", "samples"),
+        found.corners,
+        counted(found.drawn_back, "pole", "poles"),
+    );
     plan.talk.at(Talk::Verbose, line);
 }
 

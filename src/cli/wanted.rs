@@ -4,7 +4,7 @@
 use powercrust::holes::{HoleSize, GROWN};
 use powercrust::io::MeshFormat;
 use powercrust::surface::{Keep, MinVolume};
-use powercrust::{LabelOption, LambdaOption, NoiseOption, OutlierOption, Point};
+use powercrust::{LabelOption, LambdaOption, NoiseOption, OutlierOption, Point, SharpOption};
 
 /// The names of `--attributes` that are not columns of the input.
 pub const OWN: [&str; 9] = [
@@ -149,6 +149,24 @@ pub enum Holes {
     /// They are bridged, and the bridges drawn taut, as flat as their border
     /// allows.
     Fill,
+}
+
+/// What tells samples at sharp edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Sharp {
+    /// Their cell is too fat, as in the paper; needs lambda.
+    Skinny,
+    /// Their neighbours lie on two or three planes that meet there.
+    Auto,
+}
+
+impl From<Sharp> for SharpOption {
+    fn from(said: Sharp) -> SharpOption {
+        match said {
+            Sharp::Skinny => SharpOption::Skinny,
+            Sharp::Auto => SharpOption::Auto,
+        }
+    }
 }
 
 /// From which width on a gap is a hole.

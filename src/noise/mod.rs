@@ -18,17 +18,21 @@
 //!    neighbours, follows from noise over spacing; near edges and in thin parts the fit
 //!    grows from a small one and leaves out what lies off it.
 //!
-//! Samples that lie on no surface at all are told apart before (`outliers/`).
+//! Samples that lie on no surface at all are told apart before (`outliers/`),
+//! samples at sharp edges afterwards, on demand (`corners/`).
 //!
 //! `docs/noise.md` has what was measured.
 
+mod corners;
 mod fit;
 mod level;
 mod local;
 mod near;
 mod outliers;
+mod plane;
 mod project;
 
+pub use corners::{corners, Corner, CornerReport, Corners, Foot};
 pub use level::Level;
 pub use outliers::{outliers, OutlierReport, Stray};
 
@@ -36,7 +40,7 @@ use crate::context::{Cancelled, Context, Stage};
 use crate::delaunay::Samples;
 use crate::geom::Point;
 use crate::options::NoiseOption;
-use near::Near;
+pub(crate) use near::Near;
 
 /// What was found and done about noise.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]

@@ -7,7 +7,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use crate::geom::Point;
 
 /// Samples to be asked for those near a place.
-pub(super) struct Near<'a> {
+pub(crate) struct Near<'a> {
     /// The samples, in steps of the lattice.
     pub places: &'a [Point],
     tree: ImmutableKdTree<f64, 3>,

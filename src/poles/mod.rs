@@ -11,6 +11,9 @@
 //! 4. With a bound `lambda`, poles that fail the skinniness test are dropped
 //!    (`skinny.rs`). Which bound, and of which samples it is asked, is chosen
 //!    from the noise (`bound.rs`).
+//! 5. Samples told to be at sharp edges get balls that touch on the normal of
+//!    their plane, and other balls are drawn back from the edges (`edges.rs`,
+//!    `tangent.rs`).
 //!
 //! Balls come numbered along a space-filling curve by their centres, so their
 //! ids depend on nothing but the set of samples.
@@ -19,14 +22,17 @@ mod balls;
 mod bound;
 mod candidates;
 mod check;
+mod edges;
 mod select;
 mod skinny;
+mod tangent;
 
 pub use balls::{BallLattice, Balls};
 pub use bound::{Bound, BoundReport, LOUD};
 pub use candidates::Candidates;
 pub use check::{check, Finding};
 pub use select::{DroppedPole, Reason};
+pub use tangent::Tangent;
 
 use crate::context::{Cancelled, Context, Portion, Stage};
 use crate::delaunay::{Delaunay, Samples};

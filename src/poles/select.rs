@@ -50,6 +50,9 @@ pub enum Reason {
     Skinny,
     /// The other pole of its sample is, and both go (section 6.2).
     Sharp,
+    /// Its sample lies at a sharp edge, as its neighbours tell
+    /// ([`crate::options::SharpOption::Auto`]). There is no bound: it is 0.
+    Corner,
 }
 
 /// A pole that was dropped.
@@ -63,7 +66,8 @@ pub struct DroppedPole {
     pub centre: Point,
     /// Its distance from the sample.
     pub radius: f64,
-    /// The lower bound on the local feature size that it was held against.
+    /// The lower bound on the local feature size that it was held against; 0
+    /// where it was against none.
     pub bound: f64,
     /// Why it was dropped.
     pub reason: Reason,

@@ -8,6 +8,17 @@ fn no_argument_shows_help() {
 }
 
 #[test]
+fn a_wrong_value_of_sharp_is_called_wrong() {
+    let place = Place::with_torus();
+    for flags in ["--sharp=soft torus.xyz", "--sharp soft torus.xyz"] {
+        place
+            .run(&format!("{flags} -o crust.ply"))
+            .fails(USAGE, "invalid value 'soft' for '--sharp")
+            .says("skinny, auto");
+    }
+}
+
+#[test]
 fn missing_output_names_the_full_command() {
     let place = Place::with_torus();
     place

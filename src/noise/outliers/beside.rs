@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::floating::median;
-use super::plane::Plane;
 use super::{Cloud, Stray};
 use crate::geom::vec3::dist_sq;
 use crate::geom::Point;
+use crate::noise::plane::Plane;
 
 /// Neighbours whose plane is taken.
 const AROUND: usize = 16;

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::plane::Plane;
 use super::{Cloud, Stray};
+use crate::noise::plane::Plane;
 
 /// Edges longer than this many spacings, at either end, join nothing.
 const REACH: f64 = 2.0;

@@ -26,7 +26,6 @@
 
 mod beside;
 mod floating;
-mod plane;
 
 use crate::delaunay::Samples;
 use crate::geom::vec3::dist_sq;

@@ -8,7 +8,8 @@ use crate::noise::fit::principal_axes;
 #[derive(Clone, Copy)]
 pub(super) struct Plane {
     middle: Point,
-    normal: Point,
+    /// The unit normal, either way.
+    pub normal: Point,
     /// How far the samples are off it, root mean square.
     pub missed: f64,
 }
