@@ -65,7 +65,7 @@ fn sharp_takes_a_value_or_none() {
         assert_eq!(told, sharp == "auto", "{}", ran.stderr);
     }
     place
-        .run("offset torus.xyz -d 0.1 -o shell.ply --sharp auto")
+        .run("offset torus.xyz --distance 0.1 -o shell.ply --sharp auto")
         .code(DONE);
 }
 
