@@ -55,7 +55,7 @@ fn reals_out_of_range() {
         ("--deep-angle 90", "--deep-angle is 90"),
         ("--deep-angle 180", "--deep-angle is 180"),
         ("--box-factor 1.4", "--box-factor is 1.4"),
-        ("--merge -1e-9", "--merge is -0.000000001"),
+        ("--merge -1e-9", "--merge is -1e-9"),
         ("--merge 2", "--merge is 2"),
         ("--flatness 11", "--flatness is 11"),
         ("--interpolate maybe", "expected yes or no"),
