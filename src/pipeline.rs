@@ -5,23 +5,25 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::context::{Context, Stage};
-use crate::delaunay::{delaunay, samples, Delaunay, Lattice, Samples};
+use crate::delaunay::Lattice;
 use crate::error::Error;
 use crate::geom::{Ball, Point, Side};
-use crate::label::{
-    doubt, energy, hold, label, opposites, refine, wind, Evidence, LabelOptions, Neighbours, Seen,
-    MOST_UNHELD, TORN,
-};
+use crate::label::{hold, MOST_UNHELD};
 use crate::memory;
-use crate::noise::{corners, outliers, treat, Stray};
-use crate::options::{Faces, LabelOption, NoiseOption, Options, OutlierOption, SharpOption};
+use crate::noise::{corners, Stray};
+use crate::options::{Faces, Options, SharpOption};
 use crate::poles::{poles, BallLattice, Bound, DroppedPole, PoleOptions};
 use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
 use crate::surface::stage::Job;
 use crate::surface::{drop_strays, power_shape, Crust, PowerShape};
-use crate::tetra::Edges;
+
+mod labelling;
+mod sampling;
+
+use labelling::Labelling;
+use sampling::{sampled, Sampled};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -182,55 +184,14 @@ fn run(
     let mut stats = Stats::new(options);
     let mut clock = Clock::start();
 
-    // 1. Samples, frame, Delaunay triangulation.
-    context.advance(Stage::Samples, 0, points.len() as u64)?;
-    let mut samples = samples(points, options.box_factor)?;
-    stats.points = points.len();
-    stats.samples = samples.len();
-    stats.duplicates = points.len() - samples.len();
-    if options.single {
-        resolves(&samples.lattice)?;
-    }
-    noise_fits(options, &samples.lattice)?;
-    clock.lap(Stage::Samples, &mut stats);
-
-    let mut left_out = Vec::new();
-    let (mut built, mut graph) = triangulated(&samples, &mut clock, &mut stats, context)?;
-    if options.outliers == OutlierOption::Auto {
-        for _ in 0..OUTLIER_ROUNDS {
-            let Some(found) = outliers(&samples, &graph, &mut stats.outliers) else {
-                break;
-            };
-            for (s, why) in found.iter().enumerate() {
-                left_out.extend(why.map(|why| (samples.source[s], why)));
-            }
-            let keep: Vec<bool> = found.iter().map(Option::is_none).collect();
-            samples = samples.without(&keep, options.box_factor)?;
-            (built, graph) = triangulated(&samples, &mut clock, &mut stats, context)?;
-        }
-        clock.lap(Stage::Noise, &mut stats);
-    }
-
-    // Samples amid noise move onto the surface.
-    let mut noise = Vec::new();
-    match treat(&samples, options.noise, context)? {
-        Ok(treated) => {
-            stats.noise = treated.report;
-            noise = treated.shares;
-            samples = samples.moved(&treated.points, options.box_factor)?;
-            clock.lap(Stage::Noise, &mut stats);
-            (built, graph) = triangulated(&samples, &mut clock, &mut stats, context)?;
-        }
-        Err(report) => {
-            stats.noise = report;
-            clock.lap(Stage::Noise, &mut stats);
-        }
-    }
-    let mut delaunay = built;
-    stats.delaunay_cells = delaunay.complex.len();
-    stats.delaunay_predicates = delaunay.counts;
-    // What no later stage reads makes room. The triangulation has the sites.
-    delaunay.complex.neighbours = Vec::new();
+    // 1. Samples, frame, Delaunay triangulation; outliers and noise seen to.
+    let Sampled {
+        mut samples,
+        delaunay,
+        graph,
+        noise,
+        mut left_out,
+    } = sampled(points, options, &mut stats, &mut clock, context)?;
 
     // Samples at sharp edges, where told by their neighbours.
     let corners = match options.sharp {
@@ -270,60 +231,19 @@ fn run(
     stats.power_predicates = power.counts;
     clock.lap(Stage::Power, &mut stats);
 
-    // 4. Labels, by the geometry on the lattice: no overflow at any scale.
-    let on_lattice = poles.balls.on_lattice();
-    let pairs = opposites(&poles.of_sample, &delaunay.sites, &on_lattice);
-    let evidence = Evidence {
-        balls: &on_lattice,
-        outer: &poles.balls.touches_frame,
-        opposites: &pairs,
-        outward: &[],
+    // 4. Labels; samples off the surface between them are held.
+    let seen: Vec<Point> = match ways {
+        [] => Vec::new(),
+        ways => (samples.source.iter()).map(|&p| ways[p as usize]).collect(),
     };
-    let neighbours = Neighbours::of(&power, context)?;
-    let how = LabelOptions {
-        deep: -options.deep_angle.to_radians().cos(),
+    let job = Labelling {
+        poles: &poles,
+        delaunay: &delaunay,
+        power: &power,
+        spacing: &spacing,
+        options,
     };
-    let mut labels = label(&evidence, &neighbours, &how, context)?;
-    let mut seen = None;
-    if !ways.is_empty() {
-        let ways = (samples.source.iter()).map(|&p| ways[p as usize]).collect();
-        let (of_sample, sites) = (&poles.of_sample, &delaunay.sites);
-        (stats.outward, seen) = Seen::of(&evidence, of_sample, sites, ways, &labels.sides);
-    }
-    let evidence = Evidence {
-        outward: seen.as_ref().map_or(&[], |s| &s.said),
-        ..evidence
-    };
-    if seen.is_some() {
-        labels = Seen::label_again(&evidence, &neighbours, labels, &how, context)?;
-    }
-    let refined = options.label == LabelOption::Refined;
-    let greedy = refined.then(|| labels.sides.clone());
-    if refined {
-        stats.flips = refine(&evidence, &neighbours, &mut labels, &how);
-    }
-    if refined && stats.noise.treated {
-        let ways = seen.as_ref().map_or(&[][..], |s| &s.ways);
-        let (of_sample, sites) = (&poles.of_sample, &delaunay.sites);
-        stats.wound = wind(
-            &evidence,
-            of_sample,
-            sites,
-            &spacing,
-            ways,
-            &mut labels,
-            context,
-        )?;
-    }
-    stats.unreached_balls = labels.unreached;
-    let (left, mut doubt) = doubt(&evidence, &neighbours, &labels.sides, &how);
-    stats.label_energy = left;
-    stats.greedy_energy = match greedy.filter(|_| stats.flips + stats.wound.changed > 0) {
-        Some(greedy) => energy(&evidence, &neighbours, &greedy, &how),
-        None => left,
-    };
-    stats.torn_balls = doubt.iter().filter(|&&d| d >= TORN).count();
-    drop((neighbours, pairs, on_lattice));
+    let (mut labels, mut doubt) = job.run(seen, &mut stats, context)?;
     let most = match (options.sharp, options.interpolate) {
         (_, Some(true)) => 1.0,
         (_, Some(false)) | (SharpOption::Skinny, None) => 0.0,
@@ -404,22 +324,6 @@ fn run(
     })
 }
 
-/// Times that outliers are looked for at most: those left out hide others.
-const OUTLIER_ROUNDS: usize = 4;
-
-/// The Delaunay triangulation of the samples, and its edges.
-fn triangulated(
-    samples: &Samples,
-    clock: &mut Clock,
-    stats: &mut Stats,
-    context: &Context,
-) -> Result<(Delaunay, Edges), Error> {
-    let built = delaunay(samples, context)?;
-    let graph = built.edges(context)?;
-    clock.lap(Stage::Delaunay, stats);
-    Ok((built, graph))
-}
-
 /// Poles as they lie in the input.
 fn in_user_units(mut dropped: Vec<DroppedPole>, lattice: &Lattice) -> Vec<DroppedPole> {
     for pole in &mut dropped {
@@ -428,35 +332,6 @@ fn in_user_units(mut dropped: Vec<DroppedPole>, lattice: &Lattice) -> Vec<Droppe
         pole.bound = lattice.length_to_user(pole.bound);
     }
     dropped
-}
-
-/// Whether noise of the scale told, if any, leaves something to see.
-fn noise_fits(options: &Options, lattice: &Lattice) -> Result<(), Error> {
-    match options.noise {
-        NoiseOption::Scale(value) if value > lattice.length_to_user(lattice.sample_half) => {
-            Err(Error::Option {
-                name: "noise",
-                value,
-                expected: "less than half the largest side of the points' box",
-            })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Whether 32-bit coordinates tell a hundred places apart across the samples.
-fn resolves(lattice: &Lattice) -> Result<(), Error> {
-    let half = lattice.length_to_user(lattice.sample_half);
-    let extent = 2.0 * half;
-    let farthest = lattice.centre.iter().fold(half, |m, v| m.max(v.abs()));
-    let step = match farthest <= f64::from(f32::MAX) / 2.0 {
-        true => (farthest * f64::from(f32::EPSILON)).max(f64::from(f32::from_bits(1))),
-        false => f64::INFINITY,
-    };
-    if step * 100.0 > extent {
-        return Err(Error::Single { step, extent });
-    }
-    Ok(())
 }
 
 /// Measures the stages.
@@ -487,6 +362,7 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::NoiseOption;
 
     #[test]
     fn noise_wider_than_the_cloud_is_refused() {
