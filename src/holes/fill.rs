@@ -13,7 +13,7 @@
 
 use super::Holes;
 use crate::context::{Cancelled, Context};
-use crate::geom::vec3::{add, cross, dist_sq, dot, norm, scale, sub};
+use crate::geom::vec3::{add, cross, dot, norm, scale, sub};
 use crate::geom::{Bounds, Point};
 use crate::mesh::halves::Halves;
 use crate::mesh::{check, CheckOptions, Finding, PolygonMesh, Report};
@@ -105,11 +105,18 @@ impl Holes {
                 break;
             }
         }
-        let moved = |v: &u32| dist_sq(mesh.vertices[*v as usize], crust.mesh.vertices[*v as usize]);
+        let unit = unit_of(&mesh);
+        let [old, new] = [&crust.mesh, &mesh].map(|m| &m.vertices);
+        let moved = |v: &u32| {
+            let way = sub(new[*v as usize], old[*v as usize]);
+            norm(way.map(|c| c / unit))
+        };
         let filled = Filled {
             shares: tries.into_iter().map(share).collect(),
-            farthest: free.iter().map(moved).fold(0.0, f64::max).sqrt(),
-            vertices: free.iter().copied().filter(|v| moved(v) > 0.0).collect(),
+            farthest: unit * free.iter().map(moved).fold(0.0, f64::max),
+            vertices: (free.iter().copied())
+                .filter(|&v| new[v as usize] != old[v as usize])
+                .collect(),
         };
         crust.mesh = mesh;
         Ok(filled)
@@ -142,8 +149,9 @@ impl Holes {
             }
         }
         // Faces of which other programs compute no area.
+        let unit = unit_of(mesh);
         for (f, &patch) in self.patch_of_face.iter().enumerate() {
-            if patch != NONE && twice_area(mesh, f) == [0.0; 3] {
+            if patch != NONE && twice_area(mesh, f, unit) == [0.0; 3] {
                 faulty.push(f as u32);
             }
         }
@@ -165,17 +173,23 @@ impl Holes {
     }
 }
 
-/// The vector area of a triangle, twice.
-fn twice_area(mesh: &PolygonMesh, f: usize) -> Point {
+/// The diagonal: lengths in it neither overflow nor vanish when squared.
+fn unit_of(mesh: &PolygonMesh) -> f64 {
+    Bounds::of(&mesh.vertices).map_or(1.0, |b| b.diagonal())
+}
+
+/// The vector area of a triangle, twice, in squared units.
+fn twice_area(mesh: &PolygonMesh, f: usize, unit: f64) -> Point {
     let [a, b, c] = [0, 1, 2].map(|k| mesh.vertices[mesh.face(f)[k] as usize]);
-    cross(sub(b, a), sub(c, a))
+    let side = |to| sub(to, a).map(|c| c / unit);
+    cross(side(b), side(c))
 }
 
 /// Where free vertices are the weighted means of their neighbours.
 fn taut(mesh: &PolygonMesh, halves: &Halves, free: &[u32]) -> Vec<Point> {
-    let unit = Bounds::of(&mesh.vertices).map_or(1.0, |b| b.diagonal());
+    let unit = unit_of(mesh);
     let origin = mesh.vertices.first().copied().unwrap_or_default();
-    let at = |v: u32| scale(sub(mesh.vertices[v as usize], origin), 1.0 / unit);
+    let at = |v: u32| sub(mesh.vertices[v as usize], origin).map(|c| c / unit);
     let mut rows = Rows::default();
     let mut right = Vec::with_capacity(free.len());
     for &v in free {

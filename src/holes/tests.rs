@@ -185,11 +185,22 @@ fn filling_stops_before_faces_cross() {
         let filled = holes.fill(&mut crust, false, &Context::default()).unwrap();
         (filled, crust.mesh.vertices[4])
     };
-    let (filled, apex) = fill(crust(mesh, false));
-    assert_eq!((&filled.shares[..], apex[2]), (&[1.0][..], 0.0));
-    let (filled, apex) = fill(crust(tent, true));
-    assert_eq!((&filled.shares[..], apex[2]), (&[0.5][..], 0.5));
-    assert_eq!((filled.farthest, &filled.vertices[..]), (0.5, &[4][..]));
+    // At any size: squares of such lengths vanish or overflow.
+    for size in [1.0, 1e-300, 1e290] {
+        let sized = |mesh: &PolygonMesh| PolygonMesh {
+            vertices: (mesh.vertices.iter().map(|p| p.map(|c| c * size))).collect(),
+            ..mesh.clone()
+        };
+        let (filled, apex) = fill(crust(sized(&mesh), false));
+        assert_eq!((&filled.shares[..], apex[2]), (&[1.0][..], 0.0));
+        let (filled, apex) = fill(crust(sized(&tent), true));
+        assert_eq!(
+            (&filled.shares[..], &filled.vertices[..]),
+            (&[0.5][..], &[4][..])
+        );
+        near(apex[2], 0.5 * size, 1e-9);
+        near(filled.farthest, 0.5 * size, 1e-9);
+    }
 }
 
 /// A third of a sphere, seen from one side: what comes out is the sheet.
