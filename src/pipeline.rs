@@ -154,8 +154,8 @@ pub fn reconstruct(
 /// most labels found without them, or all point inwards ([`label::Agreement`]).
 ///
 /// # Errors
-/// As [`reconstruct`]; [`Error::Option`] if there is neither no vector nor one
-/// for each point.
+/// As [`reconstruct`]; [`Error::Option`] if there are vectors, but not one for
+/// each point.
 ///
 /// [`label::Agreement`]: crate::label::Agreement
 pub fn reconstruct_seen(

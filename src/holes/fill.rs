@@ -74,9 +74,12 @@ impl Holes {
         let halves = Halves::of(&crust.mesh);
         let free = self.free(crust, &halves);
         let taut = taut(&crust.mesh, &halves, &free);
-        let patch =
-            |v: u32| self.patch_of_face[halves.face[halves.leaving(v)[0] as usize] as usize];
-        let patches: Vec<u32> = free.iter().map(|&v| patch(v)).collect();
+        // A vertex between two patches goes with one of them.
+        let mut patch_of = vec![NONE; crust.mesh.vertices.len()];
+        for &v in &free {
+            let face = halves.face[halves.leaving(v)[0] as usize];
+            patch_of[v as usize] = self.patch_of_face[face as usize];
+        }
         drop(halves);
         let mut mesh = crust.mesh.clone();
         let mut tries = vec![0; self.patches.len()];
@@ -85,9 +88,9 @@ impl Holes {
             _ => 0.0,
         };
         loop {
-            for ((&v, &patch), &to) in free.iter().zip(&patches).zip(&taut) {
+            for (&v, &to) in free.iter().zip(&taut) {
                 let from = crust.mesh.vertices[v as usize];
-                let share = share(tries[patch as usize]);
+                let share = share(tries[patch_of[v as usize] as usize]);
                 let there = add(from, scale(sub(to, from), share));
                 mesh.vertices[v as usize] = match (share > 0.0, single) {
                     (false, _) => from,
@@ -101,7 +104,7 @@ impl Holes {
                 ..CheckOptions::default()
             };
             let report = check(&mesh, &all, context)?;
-            if !self.send_back(&mesh, &report, &mut tries) {
+            if !self.send_back(&mesh, &report, &patch_of, &mut tries) {
                 break;
             }
         }
@@ -135,9 +138,15 @@ impl Holes {
             .collect()
     }
 
-    /// Patches whose faces are faulty go back some way, all of them where no face tells
+    /// Patches with vertices of faulty faces go back some way, all of them where no face tells
     /// which. Whether any did.
-    fn send_back(&self, mesh: &PolygonMesh, report: &Report, tries: &mut [i32]) -> bool {
+    fn send_back(
+        &self,
+        mesh: &PolygonMesh,
+        report: &Report,
+        patch_of: &[u32],
+        tries: &mut [i32],
+    ) -> bool {
         let mut faulty: Vec<u32> = Vec::new();
         for finding in &report.findings {
             match *finding {
@@ -156,7 +165,8 @@ impl Holes {
             }
         }
         let mut patches: Vec<u32> = (faulty.iter())
-            .map(|&f| self.patch_of_face[f as usize])
+            .flat_map(|&f| mesh.face(f as usize))
+            .map(|&v| patch_of[v as usize])
             .filter(|&p| p != NONE && tries[p as usize] < HALVINGS)
             .collect();
         patches.sort_unstable();
