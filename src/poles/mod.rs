@@ -15,8 +15,8 @@
 //!    their plane, and other balls are drawn back from the edges (`edges.rs`,
 //!    `tangent.rs`).
 //!
-//! Balls come numbered along a space-filling curve by their centres, so their
-//! ids depend on nothing but the set of samples.
+//! Balls come numbered along a space-filling curve by their centres, those of
+//! step 5 after them by their coordinates, so ids depend on nothing but the set of samples.
 
 mod balls;
 mod bound;

@@ -12,6 +12,7 @@ mod offset;
 mod outward;
 mod query;
 mod refused;
+mod sharp;
 
 use std::fs;
 use std::io::{Read, Write};
