@@ -10,10 +10,8 @@ pub const MOST: usize = 1024;
 pub struct Table {
     /// One position for each row.
     pub points: Vec<Point>,
-    /// The other columns, row after row.
-    pub extra: Vec<f64>,
-    /// How many other columns there are.
-    pub width: usize,
+    /// The other columns, each with one number for each row.
+    pub extra: Vec<Vec<f64>>,
     /// The names of the other columns, where the file names them.
     pub names: Option<Vec<String>>,
     /// The number of each of the other columns in the file, from 1.
@@ -27,20 +25,17 @@ impl Table {
     pub fn new(columns: usize) -> Table {
         Table {
             points: Vec::new(),
-            extra: Vec::new(),
-            width: columns.saturating_sub(3),
+            extra: vec![Vec::new(); columns.saturating_sub(3)],
             names: None,
             numbers: (4..=columns).collect(),
             intensity: false,
         }
     }
 
-    fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.extra.chunks_exact(self.width.max(1))
-    }
-
     fn triples(&self, at: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
-        self.rows().map(move |r| [r[at], r[at + 1], r[at + 2]])
+        let column = |k: usize| self.extra[at + k].iter().copied();
+        let pairs = column(0).zip(column(1));
+        pairs.zip(column(2)).map(|((x, y), z)| [x, y, z])
     }
 
     /// Whether three columns are vectors of length 1, but for one row in a
@@ -74,7 +69,7 @@ enum Role {
 /// Hands the columns over as what they are. By their names where they have
 /// some; else, from left to right: three that are of length 1 are normals,
 /// three that are integers from 0 to 255 are colours, all else stays numbers.
-pub fn assign(table: Table, parts: &mut Parts) {
+pub fn assign(mut table: Table, parts: &mut Parts) {
     let roles = match &table.names {
         Some(names) => by_name(names),
         None => by_look(&table),
@@ -86,11 +81,11 @@ pub fn assign(table: Table, parts: &mut Parts) {
                 parts.normals = Some(normals.collect());
             }
             Role::Colour(at, alpha) => {
-                let colour = |r: &[f64]| {
-                    let alpha = alpha.map_or(f64::INFINITY, |a| r[a]);
-                    [r[at], r[at + 1], r[at + 2], alpha].map(|c| c as f32)
+                let alphas = alpha.map(|a| &table.extra[a]);
+                let colour = |(i, [r, g, b]): (usize, [f64; 3])| {
+                    [r, g, b, alphas.map_or(f64::INFINITY, |a| a[i])].map(|c| c as f32)
                 };
-                let colours: Vec<_> = table.rows().map(colour).collect();
+                let colours: Vec<_> = table.triples(at).enumerate().map(colour).collect();
                 // Without names only bytes are taken for colours.
                 let bytes = table.names.is_none();
                 parts.colours = Some(if bytes {
@@ -108,12 +103,12 @@ pub fn assign(table: Table, parts: &mut Parts) {
                 };
                 parts.scalars.push(ScalarColumn {
                     name,
-                    values: table.rows().map(|r| r[at]).collect(),
+                    values: std::mem::take(&mut table.extra[at]),
                 });
             }
         }
     }
-    if table.names.is_none() && table.width == 3 && parts.scalars.len() == 3 {
+    if table.names.is_none() && table.extra.len() == 3 && parts.scalars.len() == 3 {
         parts.report.notes.push(
             "The last three of six columns are neither normals of length 1 nor colours from 0 to 255: they are kept as numbers."
                 .into(),
@@ -156,8 +151,8 @@ fn by_look(table: &Table) -> Vec<Role> {
     let mut roles = Vec::new();
     let (mut normals, mut colours) = (false, false);
     let mut at = 0;
-    while at < table.width {
-        let three = at + 3 <= table.width && !(table.intensity && at == 0);
+    while at < table.extra.len() {
+        let three = at + 3 <= table.extra.len() && !(table.intensity && at == 0);
         if three && !normals && table.unit(at) {
             normals = true;
             roles.push(Role::Normal(at));

@@ -47,7 +47,9 @@ pub fn read_cloud(bytes: &[u8], options: &ReadOptions) -> Result<Cloud, ReadErro
     let (rows, columns) = (rows as usize, columns as usize);
     let mut table = Table::new(columns);
     table.points = vec![[0.0; 3]; rows];
-    table.extra = vec![0.0; rows * (columns - 3)];
+    for column in &mut table.extra {
+        column.resize(rows, 0.0);
+    }
     let data = &data[..rows * columns * header.size];
     let mut put = |i: usize, value: f64| {
         let (row, column) = if header.fortran {
@@ -58,7 +60,7 @@ pub fn read_cloud(bytes: &[u8], options: &ReadOptions) -> Result<Cloud, ReadErro
         if column < 3 {
             table.points[row][column] = value;
         } else {
-            table.extra[row * (columns - 3) + column - 3] = value;
+            table.extra[column - 3][row] = value;
         }
     };
     each(&header, data, &mut put)?;

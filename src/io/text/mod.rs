@@ -259,6 +259,7 @@ impl Reader {
     ) -> Result<(), ReadError> {
         let mut point = [0.0; 3];
         let mut count = 0;
+        let mut others = 0;
         let mut single = None;
         for (at, word) in fields {
             if is_comment(word) {
@@ -280,7 +281,8 @@ impl Reader {
             if target < 3 {
                 point[usize::from(target)] = value;
             } else {
-                self.table.extra.push(value);
+                self.table.extra[others].push(value);
+                others += 1;
             }
             count += 1;
         }
@@ -313,7 +315,9 @@ impl Reader {
             let next = scan::integer(word).filter(|&n| n >= 0);
             if let Some(next) = next.filter(|_| announced == points as u64) {
                 self.announced = Some(announced.saturating_add(next as u64));
-                self.table.extra.truncate(points * self.table.width);
+                for column in &mut self.table.extra {
+                    column.truncate(points);
+                }
                 self.passed_over += 1;
                 return Ok(());
             }
@@ -348,7 +352,7 @@ impl Reader {
         let unit = |p: &[f64; 3]| (crate::geom::vec3::norm(*p) - 1.0).abs() < 0.01;
         let half = announced as usize;
         if found == 2 * announced
-            && self.table.width == 0
+            && self.table.extra.len() == 0
             && self.table.points[half..].iter().all(unit)
         {
             let normals = self.table.points.split_off(half);
