@@ -23,7 +23,7 @@ mod labelling;
 mod sampling;
 
 use labelling::Labelling;
-use sampling::{sampled, Sampled};
+use sampling::{of_samples, sampled, Sampled};
 
 /// A polar ball with what the pipeline found out about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -191,7 +191,7 @@ fn run(
         graph,
         noise,
         mut left_out,
-    } = sampled(points, options, &mut stats, &mut clock, context)?;
+    } = sampled(points, ways, options, &mut stats, &mut clock, context)?;
 
     // Samples at sharp edges, where told by their neighbours.
     let corners = match options.sharp {
@@ -232,10 +232,7 @@ fn run(
     clock.lap(Stage::Power, &mut stats);
 
     // 4. Labels; samples off the surface between them are held.
-    let seen: Vec<Point> = match ways {
-        [] => Vec::new(),
-        ways => (samples.source.iter()).map(|&p| ways[p as usize]).collect(),
-    };
+    let seen = of_samples(ways, &samples);
     let job = Labelling {
         poles: &poles,
         delaunay: &delaunay,

@@ -109,11 +109,15 @@ pub fn noise(plan: &Plan, noise: &NoiseReport) {
         plan.talk.at(
             Talk::Plain,
             format_args!(
-                "note: noise of {:.3e}, {:.2} of the spacing: {} moved onto a surface through {} neighbours, by {:.3e} on average; --noise off keeps them",
+                "note: noise of {:.3e}, {:.2} of the spacing: {} moved onto a surface through {} neighbours{}, by {:.3e} on average; --noise off keeps them",
                 noise.scale,
                 noise.share,
                 counted(noise.moved, "sample", "samples"),
                 noise.neighbours,
+                match noise.sheets_told {
+                    true => " on its side by the normals",
+                    false => "",
+                },
                 noise.mean_move
             ),
         );

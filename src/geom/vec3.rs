@@ -51,6 +51,16 @@ pub fn norm(a: Point) -> f64 {
     norm_sq(a).sqrt()
 }
 
+/// The vector of unit length that way, whatever its own length; zero if it has none.
+pub fn direction(way: Point) -> Point {
+    let most = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let way = way.map(|c| c / most);
+    match norm(way) {
+        length if length.is_finite() && most > 0.0 && most.is_finite() => scale(way, 1.0 / length),
+        _ => [0.0; 3],
+    }
+}
+
 /// The squared distance from `a` to `b`.
 #[inline]
 pub fn dist_sq(a: Point, b: Point) -> f64 {

@@ -13,7 +13,7 @@
 
 use super::{energy, label, Evidence, LabelOptions, Labels, Neighbours};
 use crate::context::{Cancelled, Context};
-use crate::geom::vec3::{dot, norm, scale, sub};
+use crate::geom::vec3::{direction, dot, norm, scale, sub};
 use crate::geom::{Point, Side};
 use crate::poles::NO_POLE;
 use crate::predicates::Site;
@@ -57,7 +57,7 @@ impl Seen {
         mut ways: Vec<Point>,
         sides: &[Side],
     ) -> (Agreement, Option<Seen>) {
-        ways.iter_mut().for_each(|w| *w = unit(*w));
+        ways.iter_mut().for_each(|w| *w = direction(*w));
         let mut said = said(evidence, of_sample, sites, &ways);
         let agreement = Agreement::of(&said, sides, &ways);
         if !agreement.believed {
@@ -89,16 +89,6 @@ impl Seen {
         } else {
             before
         })
-    }
-}
-
-/// A vector of unit length that way, whatever its own, or zero if it has none.
-fn unit(way: Point) -> Point {
-    let most = way.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-    let way = way.map(|c| c / most);
-    match norm(way) {
-        length if length.is_finite() && most > 0.0 && most.is_finite() => scale(way, 1.0 / length),
-        _ => [0.0; 3],
     }
 }
 

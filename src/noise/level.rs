@@ -17,7 +17,7 @@
 use rayon::prelude::*;
 
 use super::fit::Fit;
-use super::near::Near;
+use super::sheets::Sheets;
 use crate::geom::vec3::sub;
 
 /// Samples looked at.
@@ -66,7 +66,7 @@ pub(super) fn spacing(reach: f64, count: usize) -> f64 {
 }
 
 /// Looks at some samples.
-pub(super) fn level(near: &Near) -> Level {
+pub(super) fn level(sheets: &Sheets) -> Level {
     let mut level = Level {
         share: 0.0,
         growth: f64::INFINITY,
@@ -74,14 +74,14 @@ pub(super) fn level(near: &Near) -> Level {
         kurtosis: 0.0,
         noisy: false,
     };
-    let count = near.len();
+    let count = sheets.places().len();
     if count < FEWEST {
         return level;
     }
     let looked = count.min(LOOKED_AT);
     let missed: Vec<Option<[f64; 5]>> = (0..looked)
         .into_par_iter()
-        .map(|k| missed(near, (k as u64 * count as u64 / looked as u64) as usize))
+        .map(|k| missed(sheets, (k as u64 * count as u64 / looked as u64) as usize))
         .collect();
     let of = |f: &dyn Fn(&[f64; 5]) -> f64| -> Vec<f64> {
         let values = missed.iter().flatten().map(f);
@@ -102,11 +102,11 @@ pub(super) fn level(near: &Near) -> Level {
 
 /// What quadrics through 12, 24 and 48 samples miss, the spacing, and the
 /// kurtosis of what the last misses.
-fn missed(near: &Near, s: usize) -> Option<[f64; 5]> {
-    let at = near.places[s];
-    let found = near.nearest(at, 48);
+fn missed(sheets: &Sheets, s: usize) -> Option<[f64; 5]> {
+    let at = sheets.places()[s];
+    let found = sheets.nearest(s, 48);
     let mut offsets = Vec::with_capacity(found.len());
-    offsets.extend(found.iter().map(|n| sub(near.places[n.1 as usize], at)));
+    offsets.extend(found.iter().map(|n| sub(sheets.places()[n.1 as usize], at)));
     let mut out = [0.0; 5];
     for (slot, count) in [12, 24, 48].into_iter().enumerate() {
         let reach = found.get(count - 1)?.0.sqrt();

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::fit::Fit;
 use super::level::{quantile, spacing, LEAST_SHARE};
-use super::near::Near;
+use super::sheets::Sheets;
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::sub;
 
@@ -36,16 +36,16 @@ pub(super) struct Local {
 
 /// The noise at every sample; or that which is given.
 pub(super) fn local(
-    near: &Near,
+    sheets: &Sheets,
     given: Option<f64>,
     context: &Context,
 ) -> Result<Vec<Local>, Cancelled> {
-    let count = near.len();
+    let count = sheets.places().len();
     let mut raw: Vec<Raw> = Vec::with_capacity(count);
     for from in (0..count).step_by(BLOCK) {
         context.advance(Stage::Noise, (from * 30 / count) as u64, 100)?;
         let block = from..count.min(from + BLOCK);
-        raw.par_extend(block.into_par_iter().map(|s| at_sample(near, s)));
+        raw.par_extend(block.into_par_iter().map(|s| at_sample(sheets, s)));
     }
     let mut found = Vec::with_capacity(count);
     for from in (0..count).step_by(BLOCK) {
@@ -114,9 +114,9 @@ struct Raw {
 }
 
 /// What a quadric misses at a sample, and the spacing.
-fn at_sample(near: &Near, s: usize) -> Raw {
-    let at = near.places[s];
-    let mut found = near.nearest(at, FIRST);
+fn at_sample(sheets: &Sheets, s: usize) -> Raw {
+    let at = sheets.places()[s];
+    let mut found = sheets.nearest(s, FIRST);
     let mut raw = Raw {
         missed: 0.0,
         spacing: 0.0,
@@ -128,10 +128,10 @@ fn at_sample(near: &Near, s: usize) -> Raw {
     let mut offsets = Vec::with_capacity(found.len());
     for count in [FIRST, 48, 96] {
         if count > FIRST {
-            found = near.nearest(at, count);
+            found = sheets.nearest(s, count);
         }
         offsets.clear();
-        offsets.extend(found.iter().map(|n| sub(near.places[n.1 as usize], at)));
+        offsets.extend(found.iter().map(|n| sub(sheets.places()[n.1 as usize], at)));
         let Some(reach) = found.last().map(|n| n.0.sqrt()) else {
             break;
         };

@@ -16,7 +16,8 @@
 //!    of a quadric fitted to its neighbours by weighted least squares: one step of
 //!    the moving least squares of Levin (1998; Alexa and others, 2001). How many
 //!    neighbours, follows from noise over spacing; near edges and in thin parts the fit
-//!    grows from a small one and leaves out what lies off it.
+//!    grows from a small one and leaves out what lies off it. Where points come with normals,
+//!    neighbours across a thin wall are none (`sheets.rs`).
 //!
 //! Samples that lie on no surface at all are told apart before (`outliers/`),
 //! samples at sharp edges afterwards, on demand (`corners/`).
@@ -31,6 +32,7 @@ mod near;
 mod outliers;
 mod plane;
 mod project;
+mod sheets;
 
 pub use corners::{corners, Corner, CornerReport, Corners, Foot};
 pub use level::Level;
@@ -38,9 +40,11 @@ pub use outliers::{outliers, OutlierReport, Stray};
 
 use crate::context::{Cancelled, Context, Stage};
 use crate::delaunay::Samples;
+use crate::geom::vec3::direction;
 use crate::geom::Point;
 use crate::options::NoiseOption;
 pub(crate) use near::Near;
+use sheets::Sheets;
 
 /// What was found and done about noise.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
@@ -49,6 +53,8 @@ pub struct NoiseReport {
     pub level: Option<Level>,
     /// Whether samples were moved.
     pub treated: bool,
+    /// Whether normals, or the ways to scanners, told the two sides of thin walls apart.
+    pub sheets_told: bool,
     /// Samples amid noise, which were moved.
     pub moved: usize,
     /// The median of the noise at those samples, as a standard deviation in
@@ -75,8 +81,12 @@ pub struct Treated {
     pub report: NoiseReport,
 }
 
-/// Recognises noise and moves samples onto the surface; `None` where there is
-/// no noise to speak of, with what was found.
+/// Recognises noise and moves samples onto the surface; only what was found where there is
+/// no noise to speak of.
+///
+/// `outward` has a vector out of the solid for each sample, of any length, zero where none is
+/// known, or is empty. Vectors part the two sides of walls thinner than a few times the
+/// noise, where they do that better than chance.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -90,12 +100,13 @@ pub struct Treated {
 ///     [r * a.cos(), r * a.sin(), z]
 /// }).collect();
 /// let samples = samples(&points, 5.0)?;
-/// let found = treat(&samples, NoiseOption::Auto, &Context::default())?;
+/// let found = treat(&samples, &[], NoiseOption::Auto, &Context::default())?;
 /// assert!(found.is_err());
 /// # Ok::<(), powercrust::Error>(())
 /// ```
 pub fn treat(
     samples: &Samples,
+    outward: &[Point],
     option: NoiseOption,
     context: &Context,
 ) -> Result<Result<Treated, NoiseReport>, Cancelled> {
@@ -106,9 +117,11 @@ pub fn treat(
     let places: Vec<Point> = (samples.sites.iter()).map(|s| [s[0], s[1], s[2]]).collect();
     let near = Near::of(&places);
     context.advance(Stage::Noise, 0, 100)?;
+    let ways: Vec<Point> = outward.iter().map(|&w| direction(w)).collect();
+    let sheets = Sheets::of(&near, &ways);
     let unit = samples.lattice.length_to_user(1.0);
     if option == NoiseOption::Auto {
-        let level = level::level(&near);
+        let level = level::level(&sheets);
         let noisy = level.noisy;
         report.level = Some(level);
         if !noisy {
@@ -119,8 +132,8 @@ pub fn treat(
         NoiseOption::Scale(scale) => Some(scale / unit),
         _ => None,
     };
-    let local = local::local(&near, given, context)?;
-    let feet = project::project(&near, &local, context)?;
+    let local = local::local(&sheets, given, context)?;
+    let feet = project::project(&sheets, &local, context)?;
 
     let mut scales = Vec::new();
     let mut shares = Vec::new();
@@ -142,6 +155,7 @@ pub fn treat(
         return Ok(Err(report));
     }
     report.treated = true;
+    report.sheets_told = sheets.told();
     report.moved = scales.len();
     report.scale = level::quantile(&mut scales, 0.5) * unit;
     report.share = level::quantile(&mut shares, 0.5);

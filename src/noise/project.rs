@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::fit::Fit;
 use super::local::Local;
-use super::near::Near;
+use super::sheets::Sheets;
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::{add, norm, scale, sub};
 use crate::geom::Point;
@@ -14,21 +14,18 @@ const BLOCK: usize = 1 << 14;
 
 /// Where each sample goes.
 pub(super) fn project(
-    near: &Near,
+    sheets: &Sheets,
     local: &[Local],
     context: &Context,
 ) -> Result<Vec<Point>, Cancelled> {
-    let count = near.len();
+    let count = sheets.places().len();
     let mut moved = Vec::with_capacity(count);
     for from in (0..count).step_by(BLOCK) {
         context.advance(Stage::Noise, (50 + from * 50 / count) as u64, 100)?;
         let block = from..count.min(from + BLOCK);
-        moved.par_extend(block.into_par_iter().map(|s| {
-            let at = near.places[s];
-            match local[s].neighbours {
-                0 => at,
-                _ => foot(near, at, &local[s]),
-            }
+        moved.par_extend(block.into_par_iter().map(|s| match local[s].neighbours {
+            0 => sheets.places()[s],
+            _ => foot(sheets, s, &local[s]),
         }));
     }
     Ok(moved)
@@ -48,19 +45,20 @@ const FEWEST: usize = 16;
 /// nothing at so many times the noise (Tukey's biweight).
 const CUT: f64 = 2.5;
 
-/// The foot of a place on the quadric through its neighbourhood. Weights fall
+/// The foot of a sample on the quadric through its neighbourhood. Weights fall
 /// to 0 at the farthest neighbour, so that the surface is smooth.
 ///
 /// Where that quadric is no fit, it grows from a small one, leaving out what lies
 /// off it (the forward search of Fleishman, Cohen-Or and Silva, 2005): of two
 /// sheets, or the two sides of an edge, that which the sample is on.
-fn foot(near: &Near, at: Point, local: &Local) -> Point {
-    let found = near.nearest(at, local.neighbours as usize);
+fn foot(sheets: &Sheets, s: usize, local: &Local) -> Point {
+    let at = sheets.places()[s];
+    let found = sheets.nearest(s, local.neighbours as usize);
     let Some(reach) = found.last().map(|n| n.0.sqrt()) else {
         return at;
     };
     let offsets: Vec<Point> = (found.iter())
-        .map(|n| sub(near.places[n.1 as usize], at))
+        .map(|n| sub(sheets.places()[n.1 as usize], at))
         .collect();
     let weights_within = |reach: f64, count: usize| -> Vec<f64> {
         let weight = |d: f64| {

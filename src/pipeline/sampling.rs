@@ -27,6 +27,7 @@ pub(super) struct Sampled {
 /// triangulation.
 pub(super) fn sampled(
     points: &[Point],
+    ways: &[Point],
     options: &Options,
     stats: &mut Stats,
     clock: &mut Clock,
@@ -61,7 +62,8 @@ pub(super) fn sampled(
     }
 
     let mut noise = Vec::new();
-    match treat(&samples, options.noise, context)? {
+    let outward = of_samples(ways, &samples);
+    match treat(&samples, &outward, options.noise, context)? {
         Ok(treated) => {
             stats.noise = treated.report;
             noise = treated.shares;
@@ -85,6 +87,14 @@ pub(super) fn sampled(
         noise,
         left_out,
     })
+}
+
+/// The vectors at the samples, of those at the points, if there are any.
+pub(super) fn of_samples(ways: &[Point], samples: &Samples) -> Vec<Point> {
+    match ways {
+        [] => Vec::new(),
+        ways => (samples.source.iter()).map(|&p| ways[p as usize]).collect(),
+    }
 }
 
 /// Times that outliers are looked for at most: those left out hide others.
