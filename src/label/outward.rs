@@ -7,9 +7,8 @@
 //! they may point inwards, or either way at random. So labels found
 //! without them are asked first ([`Agreement`]): where they agree with most
 //! vectors, or with the opposites of most, the vectors are believed, as evidence
-//! among other; else not at all. (Asking instead how samples around one ball agree among
-//! themselves, and with balls at the frame, was tried: it believes normals of walls that the
-//! labels lost, but these walls are lost before there are labels.)
+//! among other; else not at all. (What walls amid noise need, whose labels would be lost,
+//! `noise/sheets.rs` sees to before there are labels.)
 
 use super::{energy, label, Evidence, LabelOptions, Labels, Neighbours};
 use crate::context::{Cancelled, Context};
