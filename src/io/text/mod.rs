@@ -352,7 +352,7 @@ impl Reader {
         let unit = |p: &[f64; 3]| (crate::geom::vec3::norm(*p) - 1.0).abs() < 0.01;
         let half = announced as usize;
         if found == 2 * announced
-            && self.table.extra.len() == 0
+            && self.table.extra.is_empty()
             && self.table.points[half..].iter().all(unit)
         {
             let normals = self.table.points.split_off(half);
