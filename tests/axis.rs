@@ -327,7 +327,7 @@ fn as_few_balls_as_the_topology_allows() {
     };
     let report = simplified(&balls, &options).report;
     assert_eq!(report.betti_after.unwrap().tunnels, 1);
-    assert!(report.after > 2 && report.after < 12, "{report:?}");
+    assert!(report.after > 2 && report.after < 7, "{report:?}");
     assert_eq!(report.refused, report.after - 1);
 }
 

@@ -13,9 +13,13 @@ use crate::context::{Context, Portion, Stage};
 use crate::error::Error;
 use crate::geom::Side;
 use crate::simplify::{betti, contained_balls, Betti};
+use crate::tetra::Edges;
 
 /// The most power diagrams that are made to find out which balls must stay.
 const TRIES: usize = 40;
+
+/// Halvings between a number of balls that are too few for the topology and one of enough.
+const NARROWINGS: usize = 4;
 
 /// A simplified medial axis.
 #[derive(Clone, Debug)]
@@ -143,26 +147,8 @@ fn run(
             Some(graph) => graph,
             None => balls.neighbours(&part([50, 55]))?,
         };
-        // Fewer balls than the topology needs are not kept: more are allowed
-        // by halves until it is the same.
-        let count = of_side(&keep);
-        let mut allowed = most;
-        while allowed < count {
-            let fewest = cover::Cover {
-                balls,
-                keep: &keep,
-                graph: &graph,
-                side,
-            };
-            stands_for = fewest.at_most(allowed, &part([55, 80]))?;
-            let mut out: Vec<u32> = stands_for.iter().map(|pair| pair[0]).collect();
-            out.sort_unstable();
-            if guard.all_or_none(&out, &mut keep)? {
-                break;
-            }
-            stands_for.clear();
-            allowed += allowed / 2 + 1;
-        }
+        let (kept, by) = guard.cover(&keep, &graph, most, &part([55, 80]))?;
+        (keep, stands_for) = (kept, by);
         guard.refused += of_side(&keep).saturating_sub(most);
     }
     report.after = of_side(&keep);
@@ -228,6 +214,57 @@ impl Guard<'_> {
             }
         }
         Ok(same)
+    }
+
+    /// The fewest balls found, `most` or more, that stand for all others and leave the topology as
+    /// it is, and which stands for which. Fewer than the topology needs are not kept: more are
+    /// allowed by halves until it is the same, then fewer again between the last two numbers.
+    fn cover(
+        &self,
+        keep: &[bool],
+        graph: &Edges,
+        most: usize,
+        progress: &Portion,
+    ) -> Result<(Vec<bool>, Vec<[u32; 2]>), Error> {
+        let cover = cover::Cover {
+            balls: self.balls,
+            keep,
+            graph,
+            side: self.side,
+        };
+        let with = |allowed: usize| -> Result<Option<(Vec<bool>, Vec<[u32; 2]>)>, Error> {
+            let stands_for = cover.at_most(allowed, progress)?;
+            let out: Vec<u32> = stands_for.iter().map(|pair| pair[0]).collect();
+            let mut kept = keep.to_vec();
+            let same = self.all_or_none(&out, &mut kept)?;
+            Ok(same.then_some((kept, stands_for)))
+        };
+        let own = |&b: &usize| keep[b] && self.balls.sides[b] == self.side;
+        let count = (0..keep.len()).filter(own).count();
+        let (mut failed, mut allowed) = (0, most);
+        let mut best = (keep.to_vec(), Vec::new());
+        while allowed < count {
+            if let Some(found) = with(allowed)? {
+                best = found;
+                break;
+            }
+            failed = allowed;
+            allowed += allowed / 2 + 1;
+        }
+        if failed > 0 {
+            let mut fits = allowed.min(count);
+            for _ in 0..NARROWINGS {
+                let middle = failed + (fits - failed) / 2;
+                if middle == failed {
+                    break;
+                }
+                match with(middle)? {
+                    Some(found) => (best, fits) = (found, middle),
+                    None => failed = middle,
+                }
+            }
+        }
+        Ok(best)
     }
 
     fn take_out(&mut self, out: &[u32], keep: &mut [bool]) -> Result<(), Error> {
