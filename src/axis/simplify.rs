@@ -19,7 +19,7 @@ use crate::tetra::Edges;
 const TRIES: usize = 40;
 
 /// Halvings between a number of balls that are too few for the topology and one of enough.
-const NARROWINGS: usize = 4;
+const NARROWINGS: usize = 3;
 
 /// A simplified medial axis.
 #[derive(Clone, Debug)]
@@ -218,7 +218,7 @@ impl Guard<'_> {
 
     /// The fewest balls found, `most` or more, that stand for all others and leave the topology as
     /// it is, and which stands for which. Fewer than the topology needs are not kept: more are
-    /// allowed by halves until it is the same, then fewer again between the last two numbers.
+    /// allowed by quarters until it is the same, then fewer again between the last two numbers.
     fn cover(
         &self,
         keep: &[bool],
@@ -249,7 +249,7 @@ impl Guard<'_> {
                 break;
             }
             failed = allowed;
-            allowed += allowed / 2 + 1;
+            allowed += allowed / 4 + 1;
         }
         if failed > 0 {
             let mut fits = allowed.min(count);
