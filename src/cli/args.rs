@@ -335,6 +335,9 @@ pub struct Reconstruct {
     pub attributes: Option<Wanted>,
 
     /// Write the inner medial axis.
+    ///
+    /// Without `-o`, and where nothing is to be told of the mesh (`--json`, `--stats`,
+    /// `--verify`), no surface is made, which takes half the time.
     #[arg(long, value_name = "FILE", help_heading = EXTRA)]
     pub mat: Option<PathBuf>,
 

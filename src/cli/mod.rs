@@ -4,6 +4,7 @@
 //! way Ctrl-C takes.
 
 mod args;
+mod axes;
 mod balls;
 mod check;
 mod fail;

@@ -127,6 +127,28 @@ impl Plan {
         Ok(plan)
     }
 
+    /// Whether nothing that is wanted needs the surface: the axes, balls, poles and outliers do
+    /// not, what is told of the mesh does.
+    pub fn no_surface(&self) -> bool {
+        let others = [&self.poles, &self.outliers, &self.dropped];
+        let axes = [&self.inner_axis, &self.outer_axis];
+        let some = others.iter().any(|out| out.is_some()) || axes.iter().any(|out| out.is_some());
+        some && self.mesh.is_none() && self.stats.is_none() && !self.json && !self.verify
+    }
+
+    /// The first file that is not the mesh, for messages; the input where there is none.
+    pub fn first_result(&self) -> String {
+        let axes = [&self.inner_axis, &self.outer_axis];
+        let others = [&self.poles, &self.outliers, &self.dropped];
+        let axes = axes.into_iter().flatten().map(|o| (&o.target, &o.path));
+        let mut all = axes.chain(others.into_iter().flatten().map(|o| (&o.target, &o.path)));
+        match all.next() {
+            Some((Target::Stdout, _)) => "standard output".to_owned(),
+            Some((_, path)) => path.display().to_string(),
+            None => name(&self.input),
+        }
+    }
+
     /// A run that writes nothing: how points are read and reconstructed.
     pub fn read(args: &Reconstruct, input: &Path) -> Result<Plan, Failure> {
         let mut decisions = Vec::new();

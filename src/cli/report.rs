@@ -6,9 +6,10 @@ use powercrust::holes::{Filled, Holes, Loop};
 use powercrust::io::{as_written, Cloud, MeshFormat};
 use powercrust::mesh::{check, CheckOptions, Report as Findings};
 use powercrust::surface::ShellFilter;
-use powercrust::{Cancelled, Context, Faces, PowerShape, Reconstruction, Side};
+use powercrust::{Cancelled, Context, Faces, PowerShape, Reconstruction};
 use serde_json::{json, Value};
 
+use super::axes::Axes;
 use super::check::faults_in_words;
 use super::fail::{name, Code, Failure};
 use super::holes;
@@ -31,8 +32,6 @@ pub struct Report {
     cavities: usize,
     samples: usize,
     stages: Vec<(String, f64)>,
-    pub inner_axis: Option<PowerShape>,
-    pub outer_axis: Option<PowerShape>,
     /// For `--json`.
     summary: Value,
     /// For `--stats`.
@@ -87,6 +86,7 @@ impl Report {
         plan: &Plan,
         result: &Reconstruction,
         product: &Product,
+        axes: &Axes,
         cloud: &Cloud,
         context: &Context,
     ) -> Result<Report, Cancelled> {
@@ -107,17 +107,6 @@ impl Report {
                 check(&written, &options, context)?
             }
         };
-        let shape = |wanted: bool, side| {
-            wanted.then(|| {
-                let mut shape = result.axis(side, &cloud.points);
-                if plan.thin {
-                    shape.thin();
-                }
-                shape
-            })
-        };
-        let inner_axis = shape(plan.inner_axis.is_some(), Side::Inner);
-        let outer_axis = shape(plan.outer_axis.is_some(), Side::Outer);
         let mut head = json!({
             "powercrust": env!("CARGO_PKG_VERSION"),
             "input": { "file": name(&plan.input), "read": cloud.report },
@@ -162,7 +151,7 @@ impl Report {
         }
         head["peak_memory_bytes"] = json!(powercrust::memory::peak());
         // Betti numbers take time, so they are found where they are told.
-        for (key, shape) in [("inner_axis", &inner_axis), ("outer_axis", &outer_axis)] {
+        for (key, shape) in [("inner_axis", &axes.inner), ("outer_axis", &axes.outer)] {
             if let Some(shape) = shape.as_ref().filter(|_| plan.json || plan.stats.is_some()) {
                 head[key] = in_numbers(shape);
             }
@@ -193,8 +182,6 @@ impl Report {
             filled: product.filled.clone(),
             samples: result.stats.samples,
             stages: result.stats.seconds.clone(),
-            inner_axis,
-            outer_axis,
             summary,
             stats,
         })

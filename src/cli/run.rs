@@ -11,15 +11,16 @@ use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, 
 use powercrust::memory::{estimate, of_machine, Estimate};
 use powercrust::tetra::Complex;
 use powercrust::{
-    Bounds, Context, Error, Options, OutlierOption, Point, Reconstruction, SampleError,
+    Bounds, Context, Error, Faces, Options, OutlierOption, Point, Reconstruction, SampleError,
 };
 use serde_json::json;
 
+use super::axes::Axes;
 use super::fail::{name, reason, Code, Failure};
 use super::formats::dotted;
 use super::output::{Staged, Target};
 use super::plan::{out_of_range, Plan};
-use super::product::{self, Product};
+use super::product;
 use super::report::Report;
 use super::reports;
 use super::show::{counted, Bar, Talk};
@@ -57,6 +58,10 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
             false => usual_outliers(&cloud),
         },
         single: plan.options.single || holds_single(plan, &cloud.points),
+        faces: match plan.no_surface() {
+            true => Faces::None,
+            false => plan.options.faces,
+        },
         ..plan.options.clone()
     };
     let outcome = reconstruct(&cloud, (plan.sensor, plan.normals), &options, &context);
@@ -67,13 +72,17 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
             if plan.inner_axis.is_none() && plan.outer_axis.is_none() {
                 result.power.complex = Complex::default();
             }
+            let axes = Axes::of(plan, &result, &cloud);
+            if plan.no_surface() {
+                return Ok((result, axes, None));
+            }
             let product = product::make(plan, &cloud, &mut result, options.single, &context)?;
-            let report = Report::new(plan, &result, &product, &cloud, &context)
+            let report = Report::new(plan, &result, &product, &axes, &cloud, &context)
                 .map_err(|_| Failure::interrupted())?;
-            Ok((result, product, report))
+            Ok((result, axes, Some((product, report))))
         });
     bar.clear();
-    let (result, product, report) = outcome?;
+    let (result, axes, surface) = outcome?;
     if result.stats.duplicates > 0 {
         plan.talk.at(
             Talk::Plain,
@@ -93,8 +102,28 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     tell::edges(plan, &result.stats);
     tell::outward(plan, &cloud, &result.stats.outward);
 
+    let Some((product, report)) = surface else {
+        let staged = stage_others(plan, &result, &axes, &cloud)?;
+        staged.into_iter().try_for_each(Staged::publish)?;
+        axes.tell(plan, &result.stats, start);
+        return Ok(ExitCode::SUCCESS);
+    };
     report.verdict(plan)?;
-    write_results(plan, &result, &product, &report, &cloud)?;
+    let mut staged = Vec::new();
+    if let Some(out) = &plan.mesh {
+        let attributes = product.carried.attributes();
+        let mesh = &result.crust.mesh;
+        staged.push(stage(&out.target, &out.path, |mut w| {
+            format::write_mesh(&mut w, out.format, mesh, &attributes, &plan.write)
+        })?);
+    }
+    staged.extend(stage_others(plan, &result, &axes, &cloud)?);
+    if let Some(out) = &plan.stats {
+        let text = format!("{:#}\n", report.stats);
+        staged.push(out.target.stage(|w| w.write_all(text.as_bytes()))?);
+    }
+    // Every file is staged, then all become visible.
+    staged.into_iter().try_for_each(Staged::publish)?;
     report.admit(plan, result.stats.crossings_left)?;
     report.tell(plan, start);
     Ok(ExitCode::SUCCESS)
@@ -351,25 +380,17 @@ pub fn unsolved(input: &Path, filtered: bool, error: Error) -> Failure {
     }
 }
 
-/// Stages every file and then makes all of them visible.
-fn write_results(
+/// Stages the files that need no surface.
+fn stage_others(
     plan: &Plan,
     result: &Reconstruction,
-    product: &Product,
-    report: &Report,
+    axes: &Axes,
     cloud: &Cloud,
-) -> Result<(), Failure> {
+) -> Result<Vec<Staged>, Failure> {
     let mut staged: Vec<Staged> = Vec::new();
-    if let Some(out) = &plan.mesh {
-        let attributes = product.carried.attributes();
-        let mesh = &result.crust.mesh;
-        staged.push(stage(&out.target, &out.path, |mut w| {
-            format::write_mesh(&mut w, out.format, mesh, &attributes, &plan.write)
-        })?);
-    }
     let axes = [
-        (&plan.inner_axis, &report.inner_axis),
-        (&plan.outer_axis, &report.outer_axis),
+        (&plan.inner_axis, &axes.inner),
+        (&plan.outer_axis, &axes.outer),
     ];
     for (out, shape) in axes {
         if let (Some(out), Some(shape)) = (out, shape) {
@@ -393,11 +414,7 @@ fn write_results(
             reports::dropped(&mut w, &result.dropped, &result.sample_source, &plan.write)
         })?);
     }
-    if let Some(out) = &plan.stats {
-        let text = format!("{:#}\n", report.stats);
-        staged.push(out.target.stage(|w| w.write_all(text.as_bytes()))?);
-    }
-    staged.into_iter().try_for_each(Staged::publish)
+    Ok(staged)
 }
 
 /// Stages one file; what is no error of the disk is one of ours or of the

@@ -2,6 +2,29 @@
 
 use super::*;
 
+/// No surface is made where nothing asks about it; the axis is the same.
+#[test]
+fn an_axis_alone() {
+    let place = Place::with_torus();
+    let ran = place.run("torus.xyz --mat alone.ma --outer-mat out.obj --report-poles p.ply");
+    ran.code(DONE)
+        .says("alone.ma: 600 samples, ")
+        .says("inner balls, ")
+        .says("outer balls, ")
+        .says("no surface made, ");
+    place.run("torus.xyz --mat with.ma -o c.ply").code(DONE);
+    assert_eq!(place.get("alone.ma"), place.get("with.ma"));
+    let ran = place.run("torus.xyz --mat with.ma --json");
+    let told = ran.code(DONE).json();
+    assert_eq!(told["mesh"]["genus"], 1);
+    let ran = place.run("torus.xyz --poles poles.ply --verify");
+    ran.code(DONE).says("genus 1");
+    place.put("few.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n");
+    let before = place.names();
+    place.run("few.xyz --mat few.ma").fails(UNFIT, "few.xyz: ");
+    assert_eq!(place.names(), before);
+}
+
 #[test]
 fn axes_are_simplified() {
     let place = Place::with_torus();
