@@ -156,7 +156,9 @@ fn run(
     report.refused = guard.refused;
     let mut kept = balls.select(&keep, context)?;
     let found = |b: &LabelledBalls| wanted.map(|_| betti(&b.complex(side).simplices()));
-    report.betti_after = found(&kept);
+    // The guard let nothing go that would have changed them.
+    debug_assert_eq!(found(&kept), wanted);
+    report.betti_after = wanted;
     stands_for.retain(|&[gone, by]| !keep[gone as usize] && keep[by as usize]);
     if let Some(moved) = cover::improved(balls, &kept, &stands_for, context)? {
         // A better fit is no reason to change the topology.
