@@ -120,27 +120,15 @@ fn run(
         refused: 0,
         context,
     };
-    let unstable: Vec<u32> = (0..keep.len() as u32)
-        .filter(|&b| keep[b as usize] && balls.sides[b as usize] == side)
-        .filter(|&b| goes(balls, options, b))
-        .collect();
-    guard.take_out(&unstable, &mut keep)?;
-    if let Some(factor) = options.scale {
-        let covered = scale::covered(balls, &keep, side, factor, context)?;
-        guard.take_out(&covered, &mut keep)?;
-    }
-    let left = of_side(&keep);
-    report.unstable = report.before - left;
     let mut graph = None;
-    if let Some(delta) = options.delta {
-        let graph = graph.insert(balls.neighbours(&part([10, 20]))?);
-        let alike = |a: u32, b: u32| balls.sides[a as usize] == balls.sides[b as usize];
-        let redundant =
-            contained_balls(&balls.balls, &keep, &alike, graph, delta, &part([20, 50]))?;
-        let mut redundant: Vec<u32> = redundant.iter().map(|pair| pair[0]).collect();
-        redundant.sort_unstable();
-        guard.take_out(&redundant, &mut keep)?;
+    let all = keep.clone();
+    // All at once first: mostly nothing is against it.
+    let mut left = guard.unasked().filter(options, &mut keep, &mut graph)?;
+    if !guard.is_same(&keep)? {
+        keep = all;
+        left = guard.filter(options, &mut keep, &mut graph)?;
     }
+    report.unstable = report.before - left;
     let mut stands_for = Vec::new();
     if let Some(most) = options.most.filter(|&most| of_side(&keep) > most) {
         let graph = match graph {
@@ -200,16 +188,69 @@ struct Guard<'a> {
 }
 
 impl Guard<'_> {
+    /// One that lets all go.
+    fn unasked(&self) -> Guard<'_> {
+        Guard {
+            wanted: None,
+            ..*self
+        }
+    }
+
+    /// Whether the Betti numbers are those wanted.
+    fn is_same(&self, keep: &[bool]) -> Result<bool, Error> {
+        let Some(wanted) = self.wanted else {
+            return Ok(true);
+        };
+        let shape = self.balls.complex_of(keep, self.side, self.context)?;
+        Ok(betti(&shape.simplices()) == wanted)
+    }
+
+    /// Takes out unstable balls of the side, then redundant ones of both; how many of the side
+    /// were left between.
+    fn filter(
+        &mut self,
+        options: &SimplifyOptions,
+        keep: &mut [bool],
+        graph: &mut Option<Edges>,
+    ) -> Result<usize, Error> {
+        let (balls, side, context) = (self.balls, self.side, self.context);
+        let part = |percent| Portion {
+            context,
+            stage: Stage::Simplify,
+            percent,
+        };
+        let unstable: Vec<u32> = (0..keep.len() as u32)
+            .filter(|&b| keep[b as usize] && balls.sides[b as usize] == side)
+            .filter(|&b| goes(balls, options, b))
+            .collect();
+        self.take_out(&unstable, keep)?;
+        if let Some(factor) = options.scale {
+            let covered = scale::covered(balls, keep, side, factor, context)?;
+            self.take_out(&covered, keep)?;
+        }
+        let own = |&b: &usize| keep[b] && balls.sides[b] == side;
+        let left = (0..keep.len()).filter(own).count();
+        if let Some(delta) = options.delta {
+            let graph = match graph {
+                Some(graph) => graph,
+                None => graph.insert(balls.neighbours(&part([10, 20]))?),
+            };
+            let alike = |a: u32, b: u32| balls.sides[a as usize] == balls.sides[b as usize];
+            let redundant =
+                contained_balls(&balls.balls, keep, &alike, graph, delta, &part([20, 50]))?;
+            let mut redundant: Vec<u32> = redundant.iter().map(|pair| pair[0]).collect();
+            redundant.sort_unstable();
+            self.take_out(&redundant, keep)?;
+        }
+        Ok(left)
+    }
+
     /// Takes balls out if the Betti numbers stay; whether they did.
     fn all_or_none(&self, out: &[u32], keep: &mut [bool]) -> Result<bool, Error> {
         for &b in out {
             keep[b as usize] = false;
         }
-        let Some(wanted) = self.wanted else {
-            return Ok(true);
-        };
-        let shape = self.balls.complex_of(keep, self.side, self.context)?;
-        let same = betti(&shape.simplices()) == wanted;
+        let same = self.is_same(keep)?;
         if !same {
             for &b in out {
                 keep[b as usize] = true;
@@ -276,13 +317,12 @@ impl Guard<'_> {
         for &b in out {
             keep[b as usize] = false;
         }
-        let Some(wanted) = self.wanted else {
+        if self.wanted.is_none() {
             return Ok(());
-        };
+        }
         if self.tries > 0 {
             self.tries -= 1;
-            let shape = self.balls.complex_of(keep, self.side, self.context)?;
-            if betti(&shape.simplices()) == wanted {
+            if self.is_same(keep)? {
                 return Ok(());
             }
         }
