@@ -175,6 +175,9 @@ fn goes(balls: &LabelledBalls, options: &SimplifyOptions, b: u32) -> bool {
         })
 }
 
+/// Which balls stay, and which of those gone each of them stands for.
+type Covered = (Vec<bool>, Vec<[u32; 2]>);
+
 /// Takes balls out as long as the Betti numbers stay.
 struct Guard<'a> {
     balls: &'a LabelledBalls,
@@ -268,14 +271,14 @@ impl Guard<'_> {
         graph: &Edges,
         most: usize,
         progress: &Portion,
-    ) -> Result<(Vec<bool>, Vec<[u32; 2]>), Error> {
+    ) -> Result<Covered, Error> {
         let cover = cover::Cover {
             balls: self.balls,
             keep,
             graph,
             side: self.side,
         };
-        let with = |allowed: usize| -> Result<Option<(Vec<bool>, Vec<[u32; 2]>)>, Error> {
+        let with = |allowed: usize| -> Result<Option<Covered>, Error> {
             let stands_for = cover.at_most(allowed, progress)?;
             let out: Vec<u32> = stands_for.iter().map(|pair| pair[0]).collect();
             let mut kept = keep.to_vec();
