@@ -86,8 +86,8 @@ fn a_vector_for_each_point_or_none() {
     }
 }
 
-/// Hollow spheres whose walls are five times as thick as the noise, and three and a half times, where the wall
-/// is lost without normals: with them there is not one hole.
+/// Hollow spheres. A wall five times as thick as the noise is full of holes without normals and has none with
+/// them; one three and a half times as thick is lost without, and has its volume with them.
 #[test]
 fn normals_help_in_thin_walls_amid_noise() {
     let hollow = |inside: f64, count: usize, noise: f64| -> (Vec<Point>, Vec<Point>) {

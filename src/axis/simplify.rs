@@ -124,7 +124,7 @@ fn run(
     let all = keep.clone();
     // All at once first: mostly nothing is against it.
     let mut left = guard.unasked().filter(options, &mut keep, &mut graph)?;
-    if !guard.is_same(&keep)? {
+    if keep != all && !guard.is_same(&keep)? {
         keep = all;
         left = guard.filter(options, &mut keep, &mut graph)?;
     }
@@ -135,8 +135,7 @@ fn run(
             Some(graph) => graph,
             None => balls.neighbours(&part([50, 55]))?,
         };
-        let (kept, by) = guard.cover(&keep, &graph, most, &part([55, 80]))?;
-        (keep, stands_for) = (kept, by);
+        (keep, stands_for) = guard.cover(&keep, &graph, most, &part([55, 80]))?;
         guard.refused += of_side(&keep).saturating_sub(most);
     }
     report.after = of_side(&keep);
@@ -248,20 +247,6 @@ impl Guard<'_> {
         Ok(left)
     }
 
-    /// Takes balls out if the Betti numbers stay; whether they did.
-    fn all_or_none(&self, out: &[u32], keep: &mut [bool]) -> Result<bool, Error> {
-        for &b in out {
-            keep[b as usize] = false;
-        }
-        let same = self.is_same(keep)?;
-        if !same {
-            for &b in out {
-                keep[b as usize] = true;
-            }
-        }
-        Ok(same)
-    }
-
     /// The fewest balls found, `most` or more, that stand for all others and leave the topology as
     /// it is, and which stands for which. Fewer than the topology needs are not kept: more are
     /// allowed by quarters until it is the same, then fewer again between the last two numbers.
@@ -280,10 +265,11 @@ impl Guard<'_> {
         };
         let with = |allowed: usize| -> Result<Option<Covered>, Error> {
             let stands_for = cover.at_most(allowed, progress)?;
-            let out: Vec<u32> = stands_for.iter().map(|pair| pair[0]).collect();
             let mut kept = keep.to_vec();
-            let same = self.all_or_none(&out, &mut kept)?;
-            Ok(same.then_some((kept, stands_for)))
+            for &[gone, _] in &stands_for {
+                kept[gone as usize] = false;
+            }
+            Ok(self.is_same(&kept)?.then_some((kept, stands_for)))
         };
         let own = |&b: &usize| keep[b] && self.balls.sides[b] == self.side;
         let count = (0..keep.len()).filter(own).count();
@@ -313,6 +299,7 @@ impl Guard<'_> {
         Ok(best)
     }
 
+    /// Takes balls out, or those whose part, by halves, leaves the Betti numbers as they are.
     fn take_out(&mut self, out: &[u32], keep: &mut [bool]) -> Result<(), Error> {
         if out.is_empty() {
             return Ok(());
