@@ -8,6 +8,7 @@ use powercrust::{PowerShape, Reconstruction, Side};
 
 use super::plan::Plan;
 use super::show::{counted, grouped, Talk};
+use super::tell;
 
 /// The medial axes that are wanted.
 pub struct Axes {
@@ -34,10 +35,7 @@ impl Axes {
 
     /// The summary of a run without a surface.
     pub fn tell(&self, plan: &Plan, stats: &Stats, start: Instant) {
-        for (stage, seconds) in &stats.seconds {
-            let line = format_args!("{stage:>10} {seconds:8.3} s");
-            plan.talk.at(Talk::Verbose, line);
-        }
+        tell::stages(plan, &stats.seconds);
         let mut parts = vec![format!("{} samples", grouped(stats.samples))];
         for (shape, which) in [(&self.inner, "inner"), (&self.outer, "outer")] {
             if let Some(shape) = shape {

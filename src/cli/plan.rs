@@ -127,22 +127,25 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Whether nothing that is wanted needs the surface: the axes, balls, poles and outliers do
-    /// not, what is told of the mesh does.
+    /// The files that need no surface: axes, balls, poles and outliers.
+    fn beside_the_mesh(&self) -> impl Iterator<Item = (&Target, &Path)> {
+        let axes = [&self.inner_axis, &self.outer_axis].into_iter().flatten();
+        let others = [&self.poles, &self.outliers, &self.dropped]
+            .into_iter()
+            .flatten();
+        let axes = axes.map(|out| (&out.target, out.path.as_path()));
+        axes.chain(others.map(|out| (&out.target, out.path.as_path())))
+    }
+
+    /// Whether nothing that is wanted needs the surface: it is neither written nor told of.
     pub fn no_surface(&self) -> bool {
-        let others = [&self.poles, &self.outliers, &self.dropped];
-        let axes = [&self.inner_axis, &self.outer_axis];
-        let some = others.iter().any(|out| out.is_some()) || axes.iter().any(|out| out.is_some());
-        some && self.mesh.is_none() && self.stats.is_none() && !self.json && !self.verify
+        let told = self.stats.is_some() || self.json || self.verify;
+        self.mesh.is_none() && !told && self.beside_the_mesh().next().is_some()
     }
 
     /// The first file that is not the mesh, for messages; the input where there is none.
     pub fn first_result(&self) -> String {
-        let axes = [&self.inner_axis, &self.outer_axis];
-        let others = [&self.poles, &self.outliers, &self.dropped];
-        let axes = axes.into_iter().flatten().map(|o| (&o.target, &o.path));
-        let mut all = axes.chain(others.into_iter().flatten().map(|o| (&o.target, &o.path)));
-        match all.next() {
+        match self.beside_the_mesh().next() {
             Some((Target::Stdout, _)) => "standard output".to_owned(),
             Some((_, path)) => path.display().to_string(),
             None => name(&self.input),
@@ -298,7 +301,21 @@ impl Plan {
                 "the mesh, which needs -o",
             ),
         ];
-        match idle.iter().find(|(is_idle, ..)| *is_idle) {
+        let bare = self.no_surface();
+        let of_surface = [
+            (args.keep.is_some(), "--keep"),
+            (args.min_volume.is_some(), "--min-volume"),
+            (args.drop_cavities, "--drop-cavities"),
+            (args.holes.is_some(), "--holes"),
+            (args.hole_size.is_some(), "--hole-size"),
+            (args.faces.is_some(), "--faces"),
+            (args.reduce.is_some(), "--reduce"),
+            (args.polygons, "--polygons"),
+            (args.flatness.is_some(), "--flatness"),
+        ]
+        .map(|(given, flag)| (given && bare, flag, "the surface, which needs -o"));
+        let mut idle = idle.iter().chain(&of_surface);
+        match idle.find(|(is_idle, ..)| *is_idle) {
             Some((_, flag, where_)) => Err(Failure::usage(format!(
                 "{flag} would have no effect: it applies to {where_}"
             ))

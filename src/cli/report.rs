@@ -17,6 +17,7 @@ use super::output::Target;
 use super::plan::Plan;
 use super::product::{Product, Reduced};
 use super::show::{counted, grouped, Talk};
+use super::tell;
 use super::wanted;
 
 /// What the run found, for the summary, `--json` and `--stats`.
@@ -226,10 +227,7 @@ impl Report {
     /// The summary, on the streams that the plan allows.
     pub fn tell(mut self, plan: &Plan, start: Instant) {
         let seconds = start.elapsed().as_secs_f64();
-        for (stage, seconds) in &self.stages {
-            let line = format_args!("{stage:>10} {seconds:8.3} s");
-            plan.talk.at(Talk::Verbose, line);
-        }
+        tell::stages(plan, &self.stages);
         holes::tell(
             plan,
             &self.holes,

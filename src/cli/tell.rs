@@ -91,6 +91,14 @@ pub fn edges(plan: &Plan, stats: &Stats) {
     plan.talk.at(Talk::Verbose, line);
 }
 
+/// Says how long each stage took.
+pub fn stages(plan: &Plan, stages: &[(String, f64)]) {
+    for (stage, seconds) in stages {
+        let line = format_args!("{stage:>10} {seconds:8.3} s");
+        plan.talk.at(Talk::Verbose, line);
+    }
+}
+
 /// Says that samples were moved, and why or why not.
 pub fn noise(plan: &Plan, noise: &NoiseReport) {
     if let Some(level) = &noise.level {

@@ -19,6 +19,12 @@ fn an_axis_alone() {
     assert_eq!(told["mesh"]["genus"], 1);
     let ran = place.run("torus.xyz --poles poles.ply --verify");
     ran.code(DONE).says("genus 1");
+    // What shapes the surface would do nothing.
+    for flag in ["--keep largest", "--holes open", "--reduce 4", "--polygons"] {
+        place
+            .run(&format!("torus.xyz --mat a.ma {flag}"))
+            .fails(USAGE, "would have no effect: it applies to the surface");
+    }
     place.put("few.xyz", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n");
     let before = place.names();
     place.run("few.xyz --mat few.ma").fails(UNFIT, "few.xyz: ");
