@@ -39,6 +39,11 @@ pub struct Options {
     /// radius of the ball beside it; in [0, 10]. With 0 the faces are those of
     /// the power diagram, but for what must be mended.
     pub flatness: f64,
+    /// Whether the cells of the power diagram come back with the result, which
+    /// [`Reconstruction::axis`](crate::Reconstruction::axis) and its like need. Without
+    /// them `power.complex` is empty, and a surface takes less memory.
+    #[serde(skip)]
+    pub cells: bool,
     /// Round coordinates to single precision, as files of it hold them, and
     /// make sure of the surface on those.
     pub single: bool,
@@ -143,6 +148,7 @@ impl Default for Options {
             interpolate: None,
             faces: Faces::Triangles,
             flatness: 0.35,
+            cells: true,
             single: false,
         }
     }

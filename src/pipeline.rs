@@ -18,6 +18,7 @@ use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
 use crate::surface::stage::Job;
 use crate::surface::{drop_strays, power_shape, Crust, PowerShape};
+use crate::tetra::Complex;
 
 mod labelling;
 mod sampling;
@@ -255,11 +256,11 @@ fn run(
 
     // 5. Crust.
     let mut sides = labels.sides;
-    let job = Job {
+    let mut job = Job {
         samples: &samples,
         spacing: &spacing,
         balls: &poles.balls,
-        power: &power,
+        power: &mut power,
         options,
     };
     let mut crust = match options.faces {
@@ -267,6 +268,9 @@ fn run(
         Faces::None => Crust::default(),
         _ => job.run(&mut sides, &mut stats, context)?,
     };
+    if !options.cells {
+        power.complex = Complex::default();
+    }
     let strays = drop_strays(&mut crust);
     (stats.inverted_shells, stats.specks) = (strays.inverted, strays.specks);
     if strays.inverted + strays.specks > 0 {

@@ -8,7 +8,6 @@ use powercrust::io::{as_written, write_mesh, MeshAttributes, MeshFormat};
 use powercrust::memory::{estimate, of_machine};
 use powercrust::mesh::{check, CheckOptions, Report};
 use powercrust::offset::{Offset, OffsetOptions, Offsets};
-use powercrust::tetra::Complex;
 use powercrust::{Bounds, Context, Error, Options};
 use serde_json::{json, Value};
 
@@ -48,6 +47,7 @@ pub fn offset(args: &Args) -> Result<ExitCode, Failure> {
             .unwrap_or_else(|| frame_for(bounds, &distances)),
         single,
         outliers: usual_outliers(&cloud),
+        cells: false,
         ..plan.options.clone()
     };
     let bar = Bar::new(plan.talk);
@@ -57,10 +57,9 @@ pub fn offset(args: &Args) -> Result<ExitCode, Failure> {
     };
     let made = (|| {
         let failed = |error| refused(&plan, args, error);
-        let mut result =
+        let result =
             run::reconstruct(&cloud, (None, Normals::Auto), &options, &context).map_err(failed)?;
         tell::outliers(plan.talk, &result.stats.outliers);
-        result.power.complex = Complex::default();
         let how = OffsetOptions {
             tolerance: args.tolerance.as_ref().map(|t| t.of(diagonal)),
             fit: !args.plain,

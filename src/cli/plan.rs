@@ -349,6 +349,7 @@ fn options(args: &Reconstruct, decisions: &mut Vec<String>) -> Result<Options, F
         } else {
             Faces::Triangles
         },
+        cells: true,
         single: args.f32,
     };
     match options.validate() {

@@ -9,7 +9,6 @@ use std::time::Instant;
 use powercrust::geom::vec3::sub;
 use powercrust::io::{self as format, Cloud, CloudFormat, MeshFormat, ReadError, WriteError};
 use powercrust::memory::{estimate, of_machine, Estimate};
-use powercrust::tetra::Complex;
 use powercrust::{
     Bounds, Context, Error, Faces, Options, OutlierOption, Point, Reconstruction, SampleError,
 };
@@ -62,16 +61,14 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
             true => Faces::None,
             false => plan.options.faces,
         },
+        // Only medial axes are made of the cells.
+        cells: plan.inner_axis.is_some() || plan.outer_axis.is_some(),
         ..plan.options.clone()
     };
     let outcome = reconstruct(&cloud, (plan.sensor, plan.normals), &options, &context);
     let outcome = outcome
         .map_err(|error| unsolved(&plan.input, plan.options.lambda.is_given(), error))
         .and_then(|mut result| {
-            // Only medial axes are made of the cells.
-            if plan.inner_axis.is_none() && plan.outer_axis.is_none() {
-                result.power.complex = Complex::default();
-            }
             let axes = Axes::of(plan, &result, &cloud);
             if plan.no_surface() {
                 return Ok((result, axes, None));

@@ -15,8 +15,9 @@ use crate::mesh::polygon::start_fans;
 use crate::mesh::{check, CheckOptions, Finding, PolygonMesh, Shape};
 use crate::options::{Faces, Options};
 use crate::poles::Balls;
-use crate::power::PowerDiagram;
+use crate::power::{power_diagram, PowerDiagram};
 use crate::stats::Stats;
+use crate::tetra::Complex;
 
 /// Times a crust is made; in the second half balls only turn outward, which
 /// comes to an end.
@@ -28,7 +29,7 @@ pub(crate) struct Job<'a> {
     /// The spacing at each sample, in lattice steps.
     pub spacing: &'a [f64],
     pub balls: &'a Balls,
-    pub power: &'a PowerDiagram,
+    pub power: &'a mut PowerDiagram,
     pub options: &'a Options,
 }
 
@@ -36,7 +37,7 @@ impl Job<'_> {
     /// Makes the crust. Labels change where the surface crosses itself and
     /// nothing else helps.
     pub fn run(
-        &self,
+        &mut self,
         sides: &mut [Side],
         stats: &mut Stats,
         context: &Context,
@@ -58,6 +59,17 @@ impl Job<'_> {
             }
         }
         Err(self.nothing())
+    }
+
+    /// Makes the cells of the power diagram again if they were dropped: to the bit
+    /// the same, as it is unique.
+    fn provide_cells(&mut self, context: &Context) -> Result<(), Error> {
+        if self.power.complex.is_empty() {
+            let balls = &self.power.sites[..self.power.balls];
+            let again = power_diagram(balls, self.balls.lattice.step(), context)?;
+            self.power.complex = again.complex;
+        }
+        Ok(())
     }
 
     /// That there is no inner ball.
@@ -98,12 +110,13 @@ impl Job<'_> {
     /// of faces by their balls.
     #[allow(clippy::type_complexity)]
     fn make(
-        &self,
+        &mut self,
         sides: &[Side],
         first: bool,
         stats: &mut Stats,
         context: &Context,
     ) -> Result<(Crust, Vec<[[u32; 2]; 2]>), Error> {
+        self.provide_cells(context)?;
         let options = self.options;
         context.advance(Stage::Crust, 0, 3)?;
         let lattice = self.samples.lattice;
@@ -123,6 +136,9 @@ impl Job<'_> {
         };
         let mut clock = Instant::now();
         let raw = raw_crust(self.power, sides, &place);
+        if !options.cells {
+            self.power.complex = Complex::default();
+        }
         stats.part("crust: extract", &mut clock);
         if raw.next.is_empty() {
             return Err(self.nothing());
