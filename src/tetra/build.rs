@@ -35,6 +35,9 @@ const SHARE: usize = 2048;
 /// Slots for each thread beyond those that its sites should take.
 const SLACK: usize = 1024;
 
+/// Slots that a site should take where nothing is known yet.
+const FIRST: usize = 8;
+
 /// Walks on which a thread looks for a cell to start from.
 const TRIES: usize = 8;
 
@@ -173,6 +176,7 @@ impl<'a, C: Conflict> Growth<'a, C> {
 
     /// Inserts sites on one thread.
     fn alone(&mut self, sites: &[u32]) -> Result<(), Error> {
+        self.store.reserve(sites.len().saturating_mul(self.each()));
         let mut from = 0;
         while from < sites.len() {
             let worker = &mut self.workers[0];
@@ -187,11 +191,19 @@ impl<'a, C: Conflict> Growth<'a, C> {
             let wanted = std::mem::take(&mut worker.wanted);
             if wanted > 0 {
                 // More than that if there may be more.
-                let _ = self.store.provide(self.store.cells.len() / 4);
+                let _ = self.store.provide(self.store.cells.len() / 16);
                 self.store.provide(wanted)?;
             }
         }
         Ok(())
+    }
+
+    /// Slots that a site to come should take: as many as up to now, and a quarter more.
+    fn each(&self) -> usize {
+        match self.report.done.load(Relaxed) as usize {
+            0 => FIRST,
+            done => (self.store.live() / done + 1) * 5 / 4,
+        }
     }
 
     /// Inserts sites on several threads; returns those left, at most half of
@@ -202,10 +214,7 @@ impl<'a, C: Conflict> Growth<'a, C> {
         while self.workers.len() < threads {
             self.workers.push(Worker::new(self.test.sites().len()));
         }
-        // As many slots a site as up to now, and a quarter more.
-        let done = self.report.done.load(Relaxed).max(1) as usize;
-        let each = (self.store.live() / done + 1) * 5 / 4;
-        let _ = self.store.provide(sites.len() * each + threads * SLACK);
+        let _ = (self.store).provide(sites.len() * self.each() + threads * SLACK);
         let share = self.store.free.len() / threads;
         let regions = Regions::new(self.count);
         let mut jobs = Vec::new();

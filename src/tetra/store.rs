@@ -123,6 +123,14 @@ impl Store {
         self.cells.len() - self.free.len()
     }
 
+    /// Makes room for so many slots to come without taking it into use: growing a table of
+    /// aligned cells copies it.
+    pub fn reserve(&mut self, slots: usize) {
+        let wanted = slots.saturating_sub(self.free.len());
+        let room = wanted.min(self.most.saturating_sub(self.cells.len()));
+        self.cells.reserve_exact(room);
+    }
+
     /// Sees to it that `wanted` slots are unused.
     ///
     /// # Errors
