@@ -136,6 +136,35 @@ impl Clash {
         Ok(found)
     }
 
+    /// Those of [`Clash::pairs`] of which one is among `some`.
+    pub fn pairs_of(
+        &self,
+        tree: &Tree,
+        points: &[Point],
+        triangles: &[[u32; 3]],
+        some: &[u32],
+    ) -> Vec<(u32, u32)> {
+        let corners =
+            |t: u32| Some(triangles[t as usize]).filter(|c| (c[0] as usize) < points.len());
+        let is_flat = |c: [u32; 3]| self.is_flat(&place(points, c));
+        let mut found = Vec::new();
+        for &s in some {
+            match corners(s) {
+                None => {}
+                Some(a) if is_flat(a) => found.push((s, s)),
+                Some(a) => tree.near(&Reach::of(&place(points, a)), |t| {
+                    let other = corners(t).filter(|&b| t != s && !is_flat(b));
+                    if other.is_some_and(|b| self.meet(points, a, b)) {
+                        found.push((s.min(t), s.max(t)));
+                    }
+                }),
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
     /// For each of `count` closed shells the number of others around it;
     /// `shells` tells the shell of each triangle. Triangles that are gone
     /// count for nothing.

@@ -36,7 +36,8 @@
 //! elsewhere (see the pipeline). That ends, for at the latest where no
 //! cell is inside no surface is left.
 
-use super::mend_coarsen::{coarsen, Coarsened};
+use super::mend_blocks::coarsen_new;
+use super::mend_coarsen::{coarsen_some, Coarsened};
 use super::mend_local::{mend, Mended, LEVELS};
 use super::mend_mesh::TriMesh;
 use super::mend_pinch::draw_apart;
@@ -134,7 +135,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
         spacing = longest_edges(&mesh);
         if tolerance > 0.0 {
             let everywhere = vec![length(tolerance); spacing.len()];
-            let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &everywhere, cx)?;
+            let Coarsened { collapsed, flipped } = coarsen_new(&mut mesh, &everywhere, cx)?;
             (done.collapsed, done.flipped) = (collapsed, flipped);
             mesh.compact(&mut spacing);
             laps.lap("coarsen");
@@ -164,7 +165,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
             .map(|(e, h)| (options.flatness * e).max(NOTHING * h))
             .collect();
         drop(limit);
-        let Coarsened { collapsed, flipped } = coarsen(&mut mesh, &tolerance, cx)?;
+        let Coarsened { collapsed, flipped } = coarsen_new(&mut mesh, &tolerance, cx)?;
         (done.collapsed, done.flipped) = (collapsed, flipped);
         cx.advance(Stage::Crust, 1, 3)?;
         mesh.compact(&mut spacing);
@@ -186,9 +187,16 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
     if !left.is_empty() {
         // Around what resists the mesh may be coarser, before samples go.
         let tolerance = around(&mesh, &left, &spacing);
-        coarsen(&mut mesh, &tolerance, cx)?;
-        tree = clash.tree(&mesh.points, &mesh.tris);
-        let pairs = clash.pairs(&tree, &mesh.points, &mesh.tris, cx)?;
+        let before = mesh.tris.clone();
+        coarsen_some(&mut mesh, &tolerance, cx)?;
+        let mut changed: Vec<u32> = (0..before.len() as u32)
+            .filter(|&t| before[t as usize] != mesh.tris[t as usize])
+            .collect();
+        for &t in &changed {
+            tree.place(t, mesh.alive(t).then(|| mesh.place(t)).as_ref());
+        }
+        changed.extend(left.iter().flat_map(|&(s, t)| [s, t]));
+        let pairs = clash.pairs_of(&tree, &mesh.points, &mesh.tris, &changed);
         (more, left) = mend(&mut mesh, &clash, &mut tree, pairs, 0.0, LEVELS, &round, cx)?;
     }
     laps.lap("mend");

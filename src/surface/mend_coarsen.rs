@@ -36,71 +36,117 @@ pub(crate) struct Coarsened {
     pub flipped: usize,
 }
 
+impl std::ops::AddAssign for Coarsened {
+    fn add_assign(&mut self, more: Coarsened) {
+        self.collapsed += more.collapsed;
+        self.flipped += more.flipped;
+    }
+}
+
 /// Coarsens `mesh`; `tolerance` says how far the surface may move at each
 /// vertex.
-pub(crate) fn coarsen(
+pub(super) fn coarsen(
     mesh: &mut TriMesh,
     tolerance: &[f64],
     cx: &Context,
 ) -> Result<Coarsened, Cancelled> {
-    let mut work = Work {
-        mesh,
-        tolerance,
-        moved: vec![0.0; tolerance.len()],
-        round: 0,
-        fresh: vec![0; tolerance.len()],
-        fan: Vec::new(),
-        ring: Ring::default(),
-    };
-    let mut done = Coarsened::default();
-    let mut todo: Vec<bool> = work.mesh.samples.iter().map(|&s| s == NONE).collect();
-    for round in 0..ROUNDS {
-        work.round = round as u8;
-        let mut collapsed = 0;
-        for v in 0..todo.len() as u32 {
-            if v % 65536 == 0 {
-                cx.advance(Stage::Crust, 1, 3)?;
-            }
-            if std::mem::take(&mut todo[v as usize]) && work.collapse(v) {
-                collapsed += 1;
-                for &w in &work.ring.vertices {
-                    todo[w as usize] = work.mesh.samples[w as usize] == NONE;
-                }
-            }
-        }
-        cx.advance(Stage::Crust, 1, 3)?;
-        let flipped = work.flips(&mut todo);
-        done.collapsed += collapsed;
-        done.flipped += flipped;
-        if collapsed == 0 {
-            break;
-        }
-    }
-    Ok(done)
+    Work::new(mesh, tolerance).run(cx)
 }
 
-struct Work<'a> {
+/// [`coarsen`] where the tolerance is not zero, and nowhere else.
+pub(super) fn coarsen_some(
+    mesh: &mut TriMesh,
+    tolerance: &[f64],
+    cx: &Context,
+) -> Result<Coarsened, Cancelled> {
+    let mut work = Work::new(mesh, tolerance);
+    for (v, &tolerance) in tolerance.iter().enumerate() {
+        work.todo[v] &= tolerance > 0.0;
+        work.fresh[v] = u8::from(tolerance > 0.0);
+    }
+    work.run(cx)
+}
+
+/// Coarsening under way.
+pub(super) struct Work<'a> {
     mesh: &'a mut TriMesh,
     tolerance: &'a [f64],
+    /// Vertices all of whose triangles are in the mesh: the others and their neighbours stay.
+    pub whole: Vec<bool>,
     /// How far the surface has moved at each vertex.
-    moved: Vec<f64>,
+    pub moved: Vec<f64>,
+    /// Vertices to look at.
+    pub todo: Vec<bool>,
+    /// Vertices to look at that stayed for their neighbours.
+    pub put_off: Vec<u32>,
     round: u8,
     /// The last round that changed triangles at each vertex, one more where
-    /// edges were turned: the next looks at them too.
-    fresh: Vec<u8>,
+    /// edges were turned: the next looks at them too. The first looks where this is 1 or more.
+    pub fresh: Vec<u8>,
     fan: Vec<u32>,
     ring: Ring,
 }
 
 impl Work<'_> {
+    pub fn new<'a>(mesh: &'a mut TriMesh, tolerance: &'a [f64]) -> Work<'a> {
+        let todo = mesh.samples.iter().map(|&s| s == NONE).collect();
+        Work {
+            mesh,
+            tolerance,
+            whole: vec![true; tolerance.len()],
+            moved: vec![0.0; tolerance.len()],
+            todo,
+            put_off: Vec::new(),
+            round: 1,
+            fresh: vec![1; tolerance.len()],
+            fan: Vec::new(),
+            ring: Ring::default(),
+        }
+    }
+
+    pub fn run(&mut self, cx: &Context) -> Result<Coarsened, Cancelled> {
+        let mut done = Coarsened::default();
+        for round in 1..=ROUNDS {
+            self.round = round as u8;
+            let mut collapsed = 0;
+            for v in 0..self.todo.len() as u32 {
+                if v % 65536 == 0 {
+                    cx.advance(Stage::Crust, 1, 3)?;
+                }
+                if std::mem::take(&mut self.todo[v as usize]) && self.collapse(v) {
+                    collapsed += 1;
+                    for &w in &self.ring.vertices {
+                        self.todo[w as usize] = self.mesh.samples[w as usize] == NONE;
+                    }
+                }
+            }
+            cx.advance(Stage::Crust, 1, 3)?;
+            let flipped = self.flips();
+            done += Coarsened { collapsed, flipped };
+            if collapsed == 0 {
+                break;
+            }
+        }
+        Ok(done)
+    }
+
     /// Draws `v` into the best of its neighbours, if there is one.
     fn collapse(&mut self, v: u32) -> bool {
         let limit = self.tolerance[v as usize] - self.moved[v as usize];
         if limit <= 0.0 {
             return false;
         }
+        if !self.whole[v as usize] {
+            self.put_off.push(v);
+            return false;
+        }
         self.mesh.fan(v, &mut self.fan);
         if self.fan.len() < 3 {
+            return false;
+        }
+        let inside = |&h: &u32| self.whole[self.mesh.head(h) as usize];
+        if !self.fan.iter().all(inside) {
+            self.put_off.push(v);
             return false;
         }
         self.ring.gather(self.mesh, v, &self.fan, limit);
@@ -129,7 +175,7 @@ impl Work<'_> {
 
     /// Turns edges of triangles that are new if that makes better ones;
     /// returns how many.
-    fn flips(&mut self, todo: &mut [bool]) -> usize {
+    fn flips(&mut self) -> usize {
         let mut flipped = 0;
         let mesh = &*self.mesh;
         let mut qualities: Vec<f32> = (0..mesh.tris.len() as u32)
@@ -141,12 +187,15 @@ impl Work<'_> {
             .collect();
         for h in 0..self.mesh.twin.len() as u32 {
             let t = self.mesh.twin(h);
-            if h > t || !self.mesh.alive(h / 3) {
+            if h > t || t == NONE || !self.mesh.alive(h / 3) {
                 continue;
             }
             let before = f64::from(qualities[h as usize / 3].min(qualities[t as usize / 3]));
             if before > FINE * FINE
                 || !(self.is_new(h / 3) || self.is_new(t / 3))
+                || ![h, t, prev(h), prev(t)]
+                    .iter()
+                    .all(|&g| self.whole[self.mesh.tail(g) as usize])
                 || !self.flip_helps(h, before)
                 || !self.mesh.can_flip(h)
             {
@@ -154,7 +203,7 @@ impl Work<'_> {
             }
             for g in [h, next(h), prev(h), prev(t)] {
                 let v = self.mesh.tail(g);
-                todo[v as usize] |= self.mesh.samples[v as usize] == NONE;
+                self.todo[v as usize] |= self.mesh.samples[v as usize] == NONE;
                 self.fresh[v as usize] = self.round + 1;
             }
             self.mesh.flip(h);

@@ -11,6 +11,7 @@ use super::raw::{Crust, NONE};
 use crate::geom::{Bounds, Point};
 use crate::mesh::PolygonMesh;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A closed triangle mesh under repair. Positions are those of a
 /// [`crate::mesh::clash::Clash`].
@@ -95,6 +96,43 @@ impl TriMesh {
         };
         mesh.find_out();
         mesh
+    }
+
+    /// Some of its triangles, none with a vertex before `own`; those vertices, and the
+    /// others that its triangles have, numbered in the same order. Half-edges at the
+    /// border have no twin. Also the numbers of the vertices in this mesh.
+    pub fn piece(&self, triangles: Range<usize>, own: Range<u32>) -> (TriMesh, Vec<u32>) {
+        let of_piece = &self.tris[triangles.clone()];
+        let corners = of_piece.as_flattened().iter().copied();
+        let mut others: Vec<u32> = corners.filter(|&v| v >= own.end).collect();
+        others.sort_unstable();
+        others.dedup();
+        let number = |v: u32| match v < own.end {
+            true => v - own.start,
+            false => own.len() as u32 + others.partition_point(|&w| w < v) as u32,
+        };
+        let edges = 3 * triangles.start..3 * triangles.end;
+        let twin = (self.twin[edges.clone()].iter())
+            .map(|&t| match edges.contains(&(t as usize)) {
+                true => t - edges.start as u32,
+                false => NONE,
+            })
+            .collect();
+        let at = |v: &u32| *v as usize;
+        let vertices: Vec<u32> = own.clone().chain(others.iter().copied()).collect();
+        let mut piece = TriMesh {
+            points: vertices.iter().map(|v| self.points[at(v)]).collect(),
+            samples: vertices.iter().map(|v| self.samples[at(v)]).collect(),
+            movable: vertices.iter().map(|v| self.movable[at(v)]).collect(),
+            tris: of_piece.iter().map(|t| t.map(number)).collect(),
+            twin,
+            out: Vec::new(),
+            source: self.source[triangles].to_vec(),
+            journal: Vec::new(),
+            recording: false,
+        };
+        piece.find_out();
+        (piece, vertices)
     }
 
     /// A half-edge at each vertex.

@@ -10,6 +10,7 @@ mod extract;
 mod flat;
 mod halfedges;
 mod mend;
+mod mend_blocks;
 mod mend_coarsen;
 mod mend_local;
 mod mend_mesh;
