@@ -32,46 +32,34 @@ pub(super) fn coarsen_new(
     }
 }
 
-/// A piece as it came out.
-struct Piece {
-    triangles: Range<usize>,
-    mesh: TriMesh,
-    /// The numbers of its vertices in the whole mesh.
-    vertices: Vec<u32>,
-    whole: Vec<bool>,
-    moved: Vec<f64>,
-    put_off: Vec<u32>,
-    done: Coarsened,
-}
-
 fn by_pieces(
     mesh: &mut TriMesh,
     tolerance: &[f64],
     stretch: usize,
     cx: &Context,
 ) -> Result<Coarsened, Cancelled> {
+    // Each piece puts its triangles back where they were.
+    let mut tris = std::mem::take(&mut mesh.tris);
+    let mut twin = std::mem::take(&mut mesh.twin);
+    let pieces = pieces(&mut tris, &mut twin, mesh.points.len(), stretch);
+    let around = &*mesh;
+    let coarse: Vec<Coarse> = (pieces.into_par_iter())
+        .with_max_len(1)
+        .map(|piece| piece.coarse(around, tolerance, cx))
+        .collect::<Result<_, Cancelled>>()?;
+    (mesh.tris, mesh.twin) = (tris, twin);
     let mut done = Coarsened::default();
     let mut moved = vec![0.0; tolerance.len()];
     let mut todo = vec![false; tolerance.len()];
     let mut border = vec![false; tolerance.len()];
-    let pieces = pieces(mesh, stretch);
-    // As many at a time as keep all threads at work: they take memory.
-    for some in pieces.chunks(4 * rayon::current_num_threads()) {
-        let coarse: Vec<Piece> = (some.par_iter())
-            .map(|(triangles, own)| {
-                coarse_piece(mesh, triangles.clone(), own.clone(), tolerance, cx)
-            })
-            .collect::<Result<_, Cancelled>>()?;
-        for piece in coarse {
-            piece.put_back(mesh, &mut moved);
-            for (&v, &whole) in piece.vertices.iter().zip(&piece.whole) {
-                border[v as usize] |= !whole;
-            }
-            for &v in &piece.put_off {
-                todo[piece.vertices[v as usize] as usize] = true;
-            }
-            done += piece.done;
+    for piece in coarse {
+        for (v, out, by) in piece.whole {
+            mesh.out[v as usize] = out;
+            moved[v as usize] = by;
         }
+        (piece.border.iter()).for_each(|&v| border[v as usize] = true);
+        (piece.put_off.iter()).for_each(|&v| todo[v as usize] = true);
+        done += piece.done;
     }
     // Edges near the borders have not been looked at.
     let mut fresh = vec![0; tolerance.len()];
@@ -87,79 +75,91 @@ fn by_pieces(
     Ok(done)
 }
 
-/// The triangles of the pieces, and the stretches.
-fn pieces(mesh: &TriMesh, stretch: usize) -> Vec<(Range<usize>, Range<u32>)> {
-    let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]);
-    debug_assert!(mesh.tris.is_sorted_by_key(least));
-    let start = |v: usize| mesh.tris.partition_point(|t| (least(t) as usize) < v);
-    let all = mesh.points.len();
-    (0..all.div_ceil(stretch))
-        .map(|k| k * stretch..all.min((k + 1) * stretch))
-        .map(|own| {
-            (
-                start(own.start)..start(own.end),
-                own.start as u32..own.end as u32,
-            )
-        })
-        .filter(|(triangles, _)| !triangles.is_empty())
-        .collect()
-}
-
-fn coarse_piece(
-    of: &TriMesh,
-    triangles: Range<usize>,
+/// The triangles of a stretch.
+struct Piece<'a> {
+    tris: &'a mut [[u32; 3]],
+    twin: &'a mut [u32],
+    /// The number of its first half-edge.
+    first: usize,
+    /// The stretch.
     own: Range<u32>,
-    tolerance: &[f64],
-    cx: &Context,
-) -> Result<Piece, Cancelled> {
-    let (mut mesh, vertices) = of.piece(triangles.clone(), own);
-    let tolerance: Vec<f64> = vertices.iter().map(|&v| tolerance[v as usize]).collect();
-    let mut whole: Vec<bool> = mesh.out.iter().map(|&h| h != NONE).collect();
-    for h in (0..mesh.twin.len() as u32).filter(|&h| mesh.twin(h) == NONE) {
-        whole[mesh.tail(h) as usize] = false;
-        whole[mesh.head(h) as usize] = false;
-    }
-    let mut work = Work::new(&mut mesh, &tolerance);
-    work.whole = whole;
-    let done = work.run(cx)?;
-    let (whole, moved, put_off) = (work.whole, work.moved, work.put_off);
-    Ok(Piece {
-        triangles,
-        mesh,
-        vertices,
-        whole,
-        moved,
-        put_off,
-        done,
-    })
 }
 
-impl Piece {
-    /// Puts what changed into the whole mesh.
-    fn put_back(&self, into: &mut TriMesh, moved: &mut [f64]) {
-        let first = self.triangles.start;
-        let place = |v: u32| match v {
+/// What became of a piece, by the numbers of the whole mesh.
+struct Coarse {
+    /// Its whole vertices: a half-edge at each, and how far it has moved.
+    whole: Vec<(u32, u32, f64)>,
+    border: Vec<u32>,
+    put_off: Vec<u32>,
+    done: Coarsened,
+}
+
+fn pieces<'a>(
+    mut tris: &'a mut [[u32; 3]],
+    mut twin: &'a mut [u32],
+    vertices: usize,
+    stretch: usize,
+) -> Vec<Piece<'a>> {
+    let least = |t: &[u32; 3]| t[0].min(t[1]).min(t[2]) as usize;
+    debug_assert!(tris.is_sorted_by_key(least));
+    let mut pieces = Vec::new();
+    let mut first = 0;
+    for from in (0..vertices).step_by(stretch) {
+        let to = vertices.min(from + stretch);
+        let count = tris.partition_point(|t| least(t) < to);
+        let (of_piece, rest) = tris.split_at_mut(count);
+        let (twins_of_piece, twins) = twin.split_at_mut(3 * count);
+        (tris, twin) = (rest, twins);
+        pieces.push(Piece {
+            tris: of_piece,
+            twin: twins_of_piece,
+            first,
+            own: from as u32..to as u32,
+        });
+        first += 3 * count;
+    }
+    pieces
+}
+
+impl Piece<'_> {
+    /// Coarsens all but the border.
+    fn coarse(self, of: &TriMesh, tolerance: &[f64], cx: &Context) -> Result<Coarse, Cancelled> {
+        let (mut mesh, vertices) = of.piece(self.tris, self.twin, self.first, self.own);
+        let tolerance: Vec<f64> = vertices.iter().map(|&v| tolerance[v as usize]).collect();
+        let mut whole: Vec<bool> = mesh.out.iter().map(|&h| h != NONE).collect();
+        for h in (0..mesh.twin.len() as u32).filter(|&h| mesh.twin(h) == NONE) {
+            whole[mesh.tail(h) as usize] = false;
+            whole[mesh.head(h) as usize] = false;
+        }
+        let mut work = Work::new(&mut mesh, &tolerance);
+        work.whole = whole;
+        let done = work.run(cx)?;
+        let (whole, moved, put_off) = (work.whole, work.moved, work.put_off);
+        let number = |v: u32| match v {
             NONE => NONE,
-            v => self.vertices[v as usize],
+            v => vertices[v as usize],
         };
         let half_edge = |h: u32| match h {
             NONE => NONE,
-            h => 3 * first as u32 + h,
+            h => self.first as u32 + h,
         };
-        for (into, tri) in into.tris[first..].iter_mut().zip(&self.mesh.tris) {
-            *into = tri.map(place);
+        for (into, tri) in self.tris.iter_mut().zip(&mesh.tris) {
+            *into = tri.map(number);
         }
-        for (into, &twin) in into.twin[3 * first..].iter_mut().zip(&self.mesh.twin) {
+        for (into, &twin) in self.twin.iter_mut().zip(&mesh.twin) {
             if twin != NONE {
                 *into = half_edge(twin);
             }
         }
-        for (k, &v) in self.vertices.iter().enumerate() {
-            if self.whole[k] {
-                into.out[v as usize] = half_edge(self.mesh.out[k]);
-                moved[v as usize] = self.moved[k];
-            }
-        }
+        let all = || 0..vertices.len();
+        Ok(Coarse {
+            whole: (all().filter(|&k| whole[k]))
+                .map(|k| (vertices[k], half_edge(mesh.out[k]), moved[k]))
+                .collect(),
+            border: all().filter(|&k| !whole[k]).map(|k| vertices[k]).collect(),
+            put_off: put_off.into_iter().map(number).collect(),
+            done,
+        })
     }
 }
 

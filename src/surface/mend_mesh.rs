@@ -98,12 +98,18 @@ impl TriMesh {
         mesh
     }
 
-    /// Some of its triangles, none with a vertex before `own`; those vertices, and the
-    /// others that its triangles have, numbered in the same order. Half-edges at the
-    /// border have no twin. Also the numbers of the vertices in this mesh.
-    pub fn piece(&self, triangles: Range<usize>, own: Range<u32>) -> (TriMesh, Vec<u32>) {
-        let of_piece = &self.tris[triangles.clone()];
-        let corners = of_piece.as_flattened().iter().copied();
+    /// A mesh of some of the triangles, which were taken out of this one: `tris` and their
+    /// twins, the first half-edge being `first`. None has a vertex before `own`; those
+    /// vertices, and the others that the triangles have, are numbered in the same order.
+    /// Half-edges at the border have no twin. Also the numbers of the vertices in this mesh.
+    pub fn piece(
+        &self,
+        tris: &[[u32; 3]],
+        twin: &[u32],
+        first: usize,
+        own: Range<u32>,
+    ) -> (TriMesh, Vec<u32>) {
+        let corners = tris.as_flattened().iter().copied();
         let mut others: Vec<u32> = corners.filter(|&v| v >= own.end).collect();
         others.sort_unstable();
         others.dedup();
@@ -111,23 +117,22 @@ impl TriMesh {
             true => v - own.start,
             false => own.len() as u32 + others.partition_point(|&w| w < v) as u32,
         };
-        let edges = 3 * triangles.start..3 * triangles.end;
-        let twin = (self.twin[edges.clone()].iter())
-            .map(|&t| match edges.contains(&(t as usize)) {
-                true => t - edges.start as u32,
-                false => NONE,
-            })
-            .collect();
-        let at = |v: &u32| *v as usize;
+        let edges = first..first + twin.len();
+        let inside = |t: u32| match edges.contains(&(t as usize)) {
+            true => t - first as u32,
+            false => NONE,
+        };
         let vertices: Vec<u32> = own.clone().chain(others.iter().copied()).collect();
         let mut piece = TriMesh {
-            points: vertices.iter().map(|v| self.points[at(v)]).collect(),
-            samples: vertices.iter().map(|v| self.samples[at(v)]).collect(),
-            movable: vertices.iter().map(|v| self.movable[at(v)]).collect(),
-            tris: of_piece.iter().map(|t| t.map(number)).collect(),
-            twin,
+            points: vertices.iter().map(|&v| self.at(v)).collect(),
+            samples: (vertices.iter())
+                .map(|&v| self.samples[v as usize])
+                .collect(),
+            movable: Vec::new(),
+            tris: tris.iter().map(|t| t.map(number)).collect(),
+            twin: twin.iter().map(|&t| inside(t)).collect(),
             out: Vec::new(),
-            source: self.source[triangles].to_vec(),
+            source: Vec::new(),
             journal: Vec::new(),
             recording: false,
         };
