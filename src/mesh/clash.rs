@@ -2,11 +2,10 @@
 //! exact tests of [`super::check()`] for those who mend meshes.
 
 use super::bvh::{Bvh, Cuboid};
-use super::crossing::Field;
 use super::frame::Frame;
 use super::intersect::{contact, Contact, Twins};
 use super::nesting;
-use super::soup::{place, Triangles};
+use super::soup::place;
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::Point;
 use rayon::prelude::*;
@@ -165,26 +164,38 @@ impl Clash {
         found
     }
 
-    /// For each of `count` closed shells the number of others around it;
-    /// `shells` tells the shell of each triangle. Triangles that are gone
+    /// For each of `count` closed shells, no two of which meet, the number of others around
+    /// it; `shells` tells the shell of each triangle. Triangles that are gone
     /// count for nothing.
     pub fn depths(
         &self,
+        tree: &Tree,
         points: &[Point],
         triangles: &[[u32; 3]],
         shells: &[u32],
         count: usize,
     ) -> Vec<Option<u32>> {
-        let frame = Frame::new(points);
-        let alive = (0..triangles.len()).filter(|&t| (triangles[t][0] as usize) < points.len());
-        let listed = Triangles {
-            face: alive.clone().map(|t| t as u32).collect(),
-            corners: alive.map(|t| triangles[t]).collect(),
+        let alive = |t: u32| (triangles[t as usize][0] as usize) < points.len();
+        let mut witnesses = vec![None; count];
+        for t in (0..triangles.len() as u32).filter(|&t| alive(t)) {
+            witnesses[shells[t as usize] as usize].get_or_insert(triangles[t as usize][0]);
+        }
+        let depth = |(own, witness): (usize, &Option<u32>)| {
+            let p = points[(*witness)? as usize];
+            let mut hit = Vec::new();
+            tree.bvh.query(&nesting::ray(p), |slot| {
+                let t = tree.listed[slot as usize];
+                let shell = shells[t as usize];
+                let other = shell as usize != own && alive(t);
+                if other
+                    && nesting::hits(self.frame.kernel, p, &place(points, triangles[t as usize]))
+                {
+                    hit.push(shell);
+                }
+            });
+            Some(nesting::odd(hit).len() as u32)
         };
-        let canonical: Vec<u32> = (0..points.len() as u32).collect();
-        let none = vec![false; listed.corners.len()];
-        let field = Field::new(&frame, &canonical, &listed, &none);
-        nesting::depths(&field, shells, &vec![true; count])
+        witnesses.par_iter().enumerate().map(depth).collect()
     }
 
     fn flats(&self, tree: &Tree, points: &[Point], triangles: &[[u32; 3]]) -> Vec<bool> {

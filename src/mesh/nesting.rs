@@ -129,12 +129,8 @@ fn witnesses(field: &Field, shells: &[u32], count: usize) -> Vec<Option<u32>> {
 /// The closed shells but `own` around vertex `v`.
 fn around_vertex(field: &Field, shells: &[u32], closed: &[bool], own: u32, v: u32) -> Vec<u32> {
     let p = field.frame.points[v as usize];
-    let ray = Cuboid {
-        min: p,
-        max: [f64::INFINITY, p[1], p[2]],
-    };
     let mut hit = Vec::new();
-    field.bvh.query(&ray, |slot| {
+    field.bvh.query(&ray(p), |slot| {
         let (t, corners) = field.slots[slot as usize];
         let shell = shells[field.triangles.face[t as usize] as usize];
         let other = shell != own && closed[shell as usize];
@@ -142,13 +138,26 @@ fn around_vertex(field: &Field, shells: &[u32], closed: &[bool], own: u32, v: u3
             hit.push(shell);
         }
     });
+    odd(hit)
+}
+
+/// What a ray from `p` runs through.
+pub(super) fn ray(p: Point) -> Cuboid {
+    Cuboid {
+        min: p,
+        max: [f64::INFINITY, p[1], p[2]],
+    }
+}
+
+/// What was hit an odd number of times, in order.
+pub(super) fn odd(mut hit: Vec<u32>) -> Vec<u32> {
     hit.sort_unstable();
     let odd = hit.chunk_by(|a, b| a == b).filter(|g| g.len() % 2 == 1);
     odd.map(|g| g[0]).collect()
 }
 
 /// Whether the ray from `p`, which is not on the triangle, meets it.
-fn hits(kernel: Kernel, p: Point, t: &[Point; 3]) -> bool {
+pub(super) fn hits(kernel: Kernel, p: Point, t: &[Point; 3]) -> bool {
     let flat = |p: Point| [p[1], p[2]];
     let turn = kernel.orient2d(flat(t[0]), flat(t[1]), flat(t[2]));
     let inside = (0..3).all(|i| {

@@ -32,7 +32,8 @@ impl Fit {
         if reach <= 0.0 {
             return None;
         }
-        let axes = principal_axes(offsets, weights, reach)?;
+        let weighted = offsets.iter().copied().zip(weights.iter().copied());
+        let axes = principal_axes(weighted, reach)?;
         let mut moments = [[0.0; TERMS]; TERMS];
         let mut right = [0.0; TERMS];
         let mut square = 0.0;
@@ -110,14 +111,17 @@ impl Fit {
 }
 
 /// The principal axes, that of the least spread last.
-pub(super) fn principal_axes(offsets: &[Point], weights: &[f64], reach: f64) -> Option<[Point; 3]> {
-    let total: f64 = weights.iter().sum();
+pub(super) fn principal_axes(
+    offsets: impl Iterator<Item = (Point, f64)> + Clone,
+    reach: f64,
+) -> Option<[Point; 3]> {
+    let total: f64 = offsets.clone().map(|o| o.1).sum();
     let mut mean = [0.0; 3];
-    for (&offset, &w) in offsets.iter().zip(weights) {
+    for (offset, w) in offsets.clone() {
         mean = add(mean, scale(offset, w / total));
     }
     let mut spread = [[0.0; 3]; 3];
-    for (&offset, &w) in offsets.iter().zip(weights) {
+    for (offset, w) in offsets {
         let d = scale(sub(offset, mean), 1.0 / reach);
         for i in 0..3 {
             for j in 0..=i {

@@ -19,14 +19,13 @@ impl Plane {
     pub fn through(places: &[Point]) -> Option<Plane> {
         let first = *places.first()?;
         let share = 1.0 / places.len() as f64;
-        let offsets: Vec<Point> = places.iter().map(|&p| sub(p, first)).collect();
+        let offsets = places.iter().map(|&p| sub(p, first));
         let reach = places
             .iter()
             .map(|&p| dist_sq(p, first))
             .fold(0.0, f64::max);
-        let sum = offsets.iter().fold([0.0; 3], |sum, &o| add(sum, o));
-        let ones = vec![1.0; places.len()];
-        let [.., normal] = principal_axes(&offsets, &ones, reach.sqrt())?;
+        let sum = offsets.clone().fold([0.0; 3], add);
+        let [.., normal] = principal_axes(offsets.map(|o| (o, 1.0)), reach.sqrt())?;
         let mut plane = Plane {
             middle: add(first, scale(sum, share)),
             normal,

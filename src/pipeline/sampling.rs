@@ -56,6 +56,7 @@ pub(super) fn sampled(
             }
             let keep: Vec<bool> = found.iter().map(Option::is_none).collect();
             samples = samples.without(&keep, options.box_factor)?;
+            clock.lap(Stage::Noise, stats);
             (delaunay, graph) = triangulated(&samples, clock, stats, context)?;
         }
         clock.lap(Stage::Noise, stats);

@@ -213,7 +213,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
             done.changes += second.changes;
         }
         laps.lap("thin");
-        done.samples_lost += shells.take_out_reversed(&mut mesh, &clash);
+        done.samples_lost += shells.take_out_reversed(&mut mesh, &clash, &tree);
         laps.lap("shells");
     }
     done.changes += first.changes + more.changes;

@@ -12,7 +12,7 @@ use super::raw::NONE;
 use crate::geom::vec3::plain::{dot, norm_sq};
 use crate::geom::vec3::{add, cross, scale, sub};
 use crate::geom::Point;
-use crate::mesh::clash::Clash;
+use crate::mesh::clash::{Clash, Tree};
 
 /// A volume below this share of the squared sides times the extent of
 /// everything is lost in rounding: others may well find it negative.
@@ -69,15 +69,15 @@ impl Shells {
     }
 
     /// Takes out shells that look the wrong way; returns how many samples
-    /// went with them.
-    pub fn take_out_reversed(&self, mesh: &mut TriMesh, clash: &Clash) -> usize {
+    /// went with them. The tree holds the triangles.
+    pub fn take_out_reversed(&self, mesh: &mut TriMesh, clash: &Clash, tree: &Tree) -> usize {
         let mut lost = 0;
         let extent = reach(mesh);
         loop {
             let (now, sides) = self.volumes(mesh);
             let depths = match sides.iter().filter(|&&a| a > 0.0).count() {
                 0 | 1 => vec![Some(0); now.len()],
-                _ => clash.depths(&mesh.points, &mesh.tris, &self.of, now.len()),
+                _ => clash.depths(tree, &mesh.points, &mesh.tris, &self.of, now.len()),
             };
             let wrong: Vec<bool> = (0..now.len())
                 .map(|s| {

@@ -5,7 +5,6 @@ use rayon::prelude::*;
 use super::floating::median;
 use super::{Cloud, Stray};
 use crate::geom::vec3::dist_sq;
-use crate::geom::Point;
 use crate::noise::plane::Plane;
 
 /// Neighbours whose plane is taken.
@@ -35,31 +34,36 @@ pub(super) fn beside(cloud: &Cloud, strays: &mut [Option<Stray>]) -> usize {
 
 /// Whether a sample is off the plane of those around it.
 fn is_off(cloud: &Cloud, s: u32) -> bool {
-    let around = cloud.around(s, AROUND);
-    if around.len() < AROUND {
+    let around = cloud.around::<AROUND>(s);
+    if around.found().len() < AROUND {
         return false;
     }
     let at = cloud.places[s as usize];
-    let places: Vec<Point> = around.iter().map(|n| cloud.places[n.1 as usize]).collect();
-    let mut kept = places.clone();
-    let mut usual = 0.0;
-    let mut plane = None;
-    for _ in 0..ROUNDS {
-        let Some(fitted) = Plane::through(&kept) else {
-            return false;
-        };
-        let mut off: Vec<f64> = places.iter().map(|&p| fitted.height(p).abs()).collect();
-        usual = median(&mut off);
-        plane = Some(fitted);
-        let near = places
-            .iter()
-            .filter(|&&p| fitted.height(p).abs() <= TRIM * usual);
-        kept = near.copied().collect();
-    }
+    let places = around.all.map(|n| cloud.places[n.1 as usize]);
     // Nine samples of a sheet, one included, lie within 1.6 spacings of it.
-    let first = places[0];
-    let mut apart: Vec<f64> = places.iter().map(|&p| dist_sq(p, first)).collect();
+    let mut apart = places.map(|p| dist_sq(p, places[0]));
     apart.sort_unstable_by(f64::total_cmp);
     let spacing = apart[8].sqrt() / 1.6;
-    plane.is_some_and(|plane| plane.height(at).abs() > spacing.max(OFF * usual))
+    let mut kept = [true; AROUND];
+    let mut off = false;
+    for _ in 0..ROUNDS {
+        let mut some = [[0.0; 3]; AROUND];
+        let mut count = 0;
+        for (place, _) in places.iter().zip(kept).filter(|(_, kept)| *kept) {
+            some[count] = *place;
+            count += 1;
+        }
+        let Some(plane) = Plane::through(&some[..count]) else {
+            return false;
+        };
+        let heights = places.map(|p| plane.height(p).abs());
+        let usual = median(&mut heights.clone());
+        off = plane.height(at).abs() > spacing.max(OFF * usual);
+        let near = heights.map(|height| height <= TRIM * usual);
+        if near == kept {
+            break;
+        }
+        kept = near;
+    }
+    off
 }

@@ -179,7 +179,8 @@ fn sparse(
 /// How far the twelve samples around one are off a plane, root mean square,
 /// over their spacing.
 fn roughness(cloud: &Cloud, s: u32) -> f64 {
-    let around = cloud.around(s, 12);
+    let around = cloud.around::<12>(s);
+    let around = around.found();
     let Some(far) = around.last() else {
         return 0.0;
     };

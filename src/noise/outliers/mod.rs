@@ -112,32 +112,68 @@ impl Cloud<'_> {
         dist_sq(self.places[a as usize], self.places[b as usize])
     }
 
-    /// The ends of the shortest edges at a sample, nearest first.
-    fn shortest(&self, s: u32, most: usize) -> Vec<(f64, u32)> {
-        let edges = self.graph.at(s).iter().map(|&v| (self.dist_sq(s, v), v));
-        nearest(edges.collect(), most)
-    }
-
     /// Samples near one, itself left out: of those two edges away the nearest.
-    fn around(&self, s: u32, most: usize) -> Vec<(f64, u32)> {
+    fn around<const MOST: usize>(&self, s: u32) -> Nearest<MOST> {
         const EACH: usize = 8;
-        let first = self.shortest(s, EACH);
-        let mut all: Vec<u32> = first.iter().map(|n| n.1).collect();
-        for n in &first {
-            all.extend(self.shortest(n.1, EACH).iter().map(|n| n.1));
+        let shortest = |s: u32| {
+            let edges = self.graph.at(s).iter();
+            Nearest::<EACH>::of(edges.map(|&v| (self.dist_sq(s, v), v)))
+        };
+        let mut all = [0; EACH * (EACH + 1)];
+        let mut count = 0;
+        let mut add = |near: &Nearest<EACH>| {
+            for &(_, v) in near.found() {
+                all[count] = v;
+                count += 1;
+            }
+        };
+        let first = shortest(s);
+        add(&first);
+        for &(_, v) in first.found() {
+            add(&shortest(v));
         }
+        let all = &mut all[..count];
         all.sort_unstable();
-        all.dedup();
-        let others = all.into_iter().filter(|&v| v != s);
-        nearest(others.map(|v| (self.dist_sq(s, v), v)).collect(), most)
+        let others = all.chunk_by(|a, b| a == b).map(|same| same[0]);
+        Nearest::of(others.filter(|&v| v != s).map(|v| (self.dist_sq(s, v), v)))
     }
 }
 
-/// The nearest of some samples, nearest first.
-fn nearest(mut found: Vec<(f64, u32)>, most: usize) -> Vec<(f64, u32)> {
-    found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    found.truncate(most);
-    found
+/// The nearest of some samples, nearest first, with squared distances.
+struct Nearest<const MOST: usize> {
+    count: usize,
+    all: [(f64, u32); MOST],
+}
+
+impl<const MOST: usize> Nearest<MOST> {
+    fn of(samples: impl Iterator<Item = (f64, u32)>) -> Nearest<MOST> {
+        let mut near = Nearest {
+            count: 0,
+            all: [(f64::INFINITY, u32::MAX); MOST],
+        };
+        for sample in samples {
+            let after = |other: &(f64, u32)| {
+                let order = other.0.total_cmp(&sample.0).then(other.1.cmp(&sample.1));
+                order.is_gt()
+            };
+            let mut at = near.count;
+            while at > 0 && after(&near.all[at - 1]) {
+                if at < MOST {
+                    near.all[at] = near.all[at - 1];
+                }
+                at -= 1;
+            }
+            if at < MOST {
+                near.all[at] = sample;
+                near.count = MOST.min(near.count + 1);
+            }
+        }
+        near
+    }
+
+    fn found(&self) -> &[(f64, u32)] {
+        &self.all[..self.count]
+    }
 }
 
 #[cfg(test)]
