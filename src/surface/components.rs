@@ -6,6 +6,7 @@
 //! to the smallest part around it and goes where that goes. What lies free
 //! within a cavity is a part of its own: it goes when the cavity is filled.
 
+use crate::geom::Bounds;
 use crate::mesh::{Anatomy, PolygonMesh};
 
 use super::raw::{Crust, NONE};
@@ -234,6 +235,9 @@ pub(crate) fn drop_strays(crust: &mut Crust) -> Strays {
 }
 
 fn drop_shells(crust: &mut Crust, specks: bool) -> Strays {
+    if is_one_solid(&crust.mesh) {
+        return Strays::default();
+    }
     let anatomy = Anatomy::of(&crust.mesh);
     let mut kept: Vec<bool> = (0..anatomy.len())
         .map(|s| !anatomy.is_inverted(s))
@@ -256,6 +260,39 @@ fn drop_shells(crust: &mut Crust, specks: bool) -> Strays {
         *crust = anatomy.select(crust, &kept).0;
     }
     strays
+}
+
+/// Whether a closed manifold is one shell that clearly looks outward: so much can be told without
+/// taking the mesh apart.
+fn is_one_solid(mesh: &PolygonMesh) -> bool {
+    const CLEARLY: f64 = 1e-6;
+    let Some(bounds) = Bounds::of(&mesh.vertices) else {
+        return false;
+    };
+    let box_volume: f64 = (0..3).map(|k| bounds.max[k] - bounds.min[k]).product();
+    if mesh.volume() <= CLEARLY * box_volume {
+        return false;
+    }
+    // Vertices in one set are joined by edges.
+    let mut parent: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
+    let root = |parent: &mut [u32], mut v: u32| {
+        while parent[v as usize] != v {
+            parent[v as usize] = parent[parent[v as usize] as usize];
+            v = parent[v as usize];
+        }
+        v
+    };
+    let mut sets = mesh.vertices.len();
+    for f in 0..mesh.face_count() {
+        for pair in mesh.face(f).windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|v| root(&mut parent, v));
+            if a != b {
+                parent[a.max(b) as usize] = a.min(b);
+                sets -= 1;
+            }
+        }
+    }
+    sets == 1
 }
 
 /// How many samples each shell passes through.
