@@ -42,24 +42,32 @@ pub struct Estimate {
 /// Predicts peak memory and time of a reconstruction from the number of
 /// points.
 ///
-/// 3.2 KB a point and 6 MB for the process, by measurements on four clouds of
-/// 10,000 to 100,000 points, which it meets within a quarter. Spheres and grids
-/// take less than half, and so do points that repeat others. Time depends on the
-/// machine and on the scan by a factor of three.
+/// 8 MB for the process, and 2.75 KB a point up to 100,000 points, less from there to
+/// 1.77 KB at a million: by measurements on 34 clouds, 30 of which it meets within a quarter
+/// (`docs/benchmarks`). Even clouds of smooth surfaces, grids and points that repeat others take less. Time
+/// depends on the machine and on the scan by a factor of three.
 ///
 /// ```
 /// let estimate = powercrust::memory::estimate(1_000_000);
-/// assert!((2e9..4e9).contains(&(estimate.memory_bytes as f64)));
+/// assert!((1.4e9..2.4e9).contains(&(estimate.memory_bytes as f64)));
 /// ```
 pub fn estimate(points: usize) -> Estimate {
+    // Large clouds take memory for all samples at once less often.
+    let orders = (points as f64 / MANY).log10().clamp(0.0, 1.0);
+    let per_point = PER_POINT + (PER_POINT_OF_MANY - PER_POINT) * orders;
     Estimate {
-        memory_bytes: PROCESS + PER_POINT * points as u64,
+        memory_bytes: (PROCESS + per_point * points as f64) as u64,
         seconds: SECONDS_PER_POINT * points as f64,
     }
 }
 
-const PROCESS: u64 = 6_000_000;
-const PER_POINT: u64 = 3_200;
+/// Bytes.
+const PROCESS: f64 = 8e6;
+/// Bytes a point, for no more than [`MANY`].
+const PER_POINT: f64 = 2750.0;
+/// The same for ten times as many, and more.
+const PER_POINT_OF_MANY: f64 = 1770.0;
+const MANY: f64 = 1e5;
 const SECONDS_PER_POINT: f64 = 1e-4;
 
 #[cfg(test)]
