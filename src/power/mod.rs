@@ -12,6 +12,8 @@ mod tree;
 pub use check::{check, Finding};
 pub(crate) use tree::{BallTree, Extent};
 
+use std::collections::HashSet;
+
 use crate::context::{Context, Stage};
 use crate::delaunay::{circumcentre, corners, Centre};
 use crate::error::Error;
@@ -60,7 +62,10 @@ impl PowerDiagram {
         };
         let corners = self.complex.cells[cell as usize];
         let mut best = least(corners, corners[0]);
+        // Stars of large balls have thousands of cells: those are looked up by hash.
+        const FEW: usize = 32;
         let mut star = vec![cell];
+        let mut many: HashSet<u32> = HashSet::new();
         let mut next = 0;
         while next < star.len() {
             let c = star[next];
@@ -69,16 +74,26 @@ impl PowerDiagram {
             if at(better) < at(best) {
                 best = better;
                 star.clear();
+                many.clear();
                 star.push(c);
                 next = 0;
                 continue;
             }
             for packed in self.complex.neighbours[c as usize] {
                 let d = packed >> 2;
-                let around = packed != NONE
-                    && self.complex.cells[d as usize].contains(&best)
-                    && !star.contains(&d);
-                if around {
+                if packed == NONE || !self.complex.cells[d as usize].contains(&best) {
+                    continue;
+                }
+                let new = match star.len() {
+                    ..FEW => !star.contains(&d),
+                    _ => {
+                        if many.is_empty() {
+                            many.extend(&star);
+                        }
+                        many.insert(d)
+                    }
+                };
+                if new {
                     star.push(d);
                 }
             }
