@@ -43,7 +43,7 @@ pub struct Estimate {
 /// points.
 ///
 /// 8 MB for the process, and 2.75 KB a point up to 100,000 points, less from there to
-/// 1.77 KB at a million: by measurements on 34 clouds, 30 of which it meets within a quarter
+/// 1.74 KB at a million: by measurements on 34 clouds, 30 of which it meets within a quarter
 /// (`docs/benchmarks`). Even clouds of smooth surfaces, grids and points that repeat others take less. Time
 /// depends on the machine and on the scan by a factor of three.
 ///
@@ -66,7 +66,7 @@ const PROCESS: f64 = 8e6;
 /// Bytes a point, for no more than [`MANY`].
 const PER_POINT: f64 = 2750.0;
 /// The same for ten times as many, and more.
-const PER_POINT_OF_MANY: f64 = 1770.0;
+const PER_POINT_OF_MANY: f64 = 1740.0;
 const MANY: f64 = 1e5;
 const SECONDS_PER_POINT: f64 = 1e-4;
 

@@ -365,6 +365,34 @@ mod tests {
     use super::*;
     use crate::options::NoiseOption;
 
+    /// The cells may go: the surface is the same, and they can be made again, those of
+    /// balls added later included.
+    #[test]
+    fn cells_that_were_dropped_can_be_made_again() {
+        let share = |k: u32, of: f64| (f64::from(k) * of).fract() * 2.0 - 1.0;
+        let on_cube = |k: u32| {
+            let mut p = [share(k, 0.618_034), share(k, 0.754_878), share(k, 0.569_84)];
+            p[k as usize % 3] = if k % 2 == 0 { 1.0 } else { -1.0 };
+            p
+        };
+        let points: Vec<Point> = (0..3000).map(on_cube).collect();
+        let run = |cells| {
+            let options = Options {
+                cells,
+                ..Options::default()
+            };
+            reconstruct(&points, &options, &Context::default()).unwrap()
+        };
+        let (with, without) = (run(true), run(false));
+        assert!(with.stats.held.added > 0);
+        assert!(without.power.complex.is_empty());
+        assert_eq!(with.crust.mesh, without.crust.mesh);
+        let (power, step) = (&with.power, with.ball_lattice.step());
+        let again = power_diagram(&power.sites[..power.balls], step, &Context::default()).unwrap();
+        assert_eq!(again.complex.cells, power.complex.cells);
+        assert_eq!(again.complex.neighbours, power.complex.neighbours);
+    }
+
     #[test]
     fn noise_wider_than_the_cloud_is_refused() {
         let points: Vec<Point> = (0..27)

@@ -224,6 +224,19 @@ mod tests {
         };
         let whole = coarse(0);
         assert!(whole < 2000, "{whole}");
+        let by_threads = [1, 3].map(|threads| {
+            let context = Context {
+                threads: std::num::NonZero::new(threads),
+                ..Context::default()
+            };
+            context.install(|| {
+                let mut mesh = TriMesh::new(&crust, &crust.mesh.vertices);
+                let tolerance = vec![0.02; mesh.points.len()];
+                by_pieces(&mut mesh, &tolerance, 300, &context).map(|_| ())?;
+                Ok::<_, Cancelled>((mesh.tris, mesh.twin))
+            })
+        });
+        assert!(by_threads[0] == by_threads[1] && by_threads[0].is_ok());
         for stretch in [50, 300, 1000, 4000] {
             let left = coarse(stretch);
             assert!(
