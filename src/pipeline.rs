@@ -372,7 +372,7 @@ mod tests {
         let share = |k: u32, of: f64| (f64::from(k) * of).fract() * 2.0 - 1.0;
         let on_cube = |k: u32| {
             let mut p = [share(k, 0.618_034), share(k, 0.754_878), share(k, 0.569_84)];
-            p[k as usize % 3] = if k % 2 == 0 { 1.0 } else { -1.0 };
+            p[k as usize % 3] = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
             p
         };
         let points: Vec<Point> = (0..3000).map(on_cube).collect();
