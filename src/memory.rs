@@ -42,8 +42,8 @@ pub struct Estimate {
 /// Predicts peak memory and time of a reconstruction from the number of
 /// points.
 ///
-/// 8 MB for the process, and 2.75 KB a point up to 100,000 points, less from there to
-/// 1.74 KB at a million: by measurements on 34 clouds, 30 of which it meets within a quarter
+/// 10 MB for the process, and 2.75 KB a point up to 100,000 points, less from there to
+/// 1.74 KB at a million: by measurements on 33 clouds, 29 of which it meets within a quarter
 /// (`docs/benchmarks`). Even clouds of smooth surfaces, grids and points that repeat others take less. Time
 /// depends on the machine and on the scan by a factor of three.
 ///
@@ -62,7 +62,7 @@ pub fn estimate(points: usize) -> Estimate {
 }
 
 /// Bytes.
-const PROCESS: f64 = 8e6;
+const PROCESS: f64 = 10e6;
 /// Bytes a point, for no more than [`MANY`].
 const PER_POINT: f64 = 2750.0;
 /// The same for ten times as many, and more.
