@@ -80,21 +80,24 @@ pub fn hold(
                 NONE => 0,
                 cell => cell,
             };
-            let free = candidates.at(k).filter(|&c| !taken(candidates.site(c)));
-            let mut largest_first: Vec<usize> = free.collect();
-            largest_first.sort_by(|&a, &b| {
-                let (p, q) = (candidates.site(a), candidates.site(b));
-                q[3].total_cmp(&p[3]).then_with(|| by_centre(p, q))
-            });
-            largest_first
-                .into_iter()
-                .find(|&c| {
+            candidates
+                .at(k)
+                .filter(|&c| !taken(candidates.site(c)))
+                .filter(|&c| {
                     let owner = power.owner(candidates.site(c), hint);
                     let side = match owner {
                         Some(ball) => labels.sides[ball as usize],
                         None => Side::Outer,
                     };
                     side == wanted
+                })
+                .max_by(|&a, &b| {
+                    let (p, q) = (candidates.site(a), candidates.site(b));
+                    p[3].total_cmp(&q[3]).then_with(|| {
+                        (q[..3])
+                            .partial_cmp(&p[..3])
+                            .unwrap_or(std::cmp::Ordering::Equal)
+                    })
                 })
                 .map(|c| (c, wanted))
         })

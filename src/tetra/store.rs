@@ -124,11 +124,11 @@ impl Store {
     }
 
     /// Makes room for so many slots to come without taking it into use: growing a table of
-    /// aligned cells copies it.
+    /// aligned cells copies it. Where there is no such room, it will grow.
     pub fn reserve(&mut self, slots: usize) {
         let wanted = slots.saturating_sub(self.free.len());
         let room = wanted.min(self.most.saturating_sub(self.cells.len()));
-        self.cells.reserve_exact(room);
+        let _ = self.cells.try_reserve_exact(room);
     }
 
     /// Sees to it that `wanted` slots are unused.
