@@ -6,7 +6,7 @@
 //! know of each other. What was put off at their borders is done afterwards, in the whole mesh.
 //!
 //! The stretches have a fixed length: the result does not depend on the number
-//! of threads. It is also faster on one, as a piece stays in the caches for all its rounds.
+//! of threads. On one thread it takes as long as in one piece.
 
 use std::ops::Range;
 
