@@ -17,7 +17,7 @@ use crate::power::{power_diagram, PowerDiagram};
 use crate::simplify::{merge_redundant, Contact, Touching};
 use crate::stats::Stats;
 use crate::surface::stage::Job;
-use crate::surface::{drop_strays, power_shape, Crust, PowerShape};
+use crate::surface::{drop_strays, power_shape, Crust, PowerShape, FEWEST, FEWEST_AMID_NOISE};
 use crate::tetra::Complex;
 
 mod labelling;
@@ -256,7 +256,11 @@ fn run(
 
     // 5. Crust.
     let mut sides = labels.sides;
+    let scale: Vec<f64> = (noise.iter().zip(&spacing))
+        .map(|(&share, h)| f64::from(share) * h)
+        .collect();
     let mut job = Job {
+        noise: &scale,
         samples: &samples,
         spacing: &spacing,
         balls: &poles.balls,
@@ -271,7 +275,11 @@ fn run(
     if !options.cells {
         power.complex = Complex::default();
     }
-    let strays = drop_strays(&mut crust);
+    let fewest = match stats.noise.treated {
+        true => FEWEST_AMID_NOISE,
+        false => FEWEST,
+    };
+    let strays = drop_strays(&mut crust, fewest);
     (stats.inverted_shells, stats.specks) = (strays.inverted, strays.specks);
     if strays.inverted + strays.specks > 0 {
         stats.vertices = crust.mesh.vertices.len();

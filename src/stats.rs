@@ -63,6 +63,8 @@ pub struct Stats {
     pub mend_rounds: usize,
     /// Changes made to mend.
     pub mended_faces: usize,
+    /// Handles thinner than the noise that were cut.
+    pub handles_cut: usize,
     /// Vertices drawn apart where sheets of the solid touched.
     pub drawn_apart: usize,
     /// Vertices that are no samples taken out of flat places.
@@ -140,6 +142,7 @@ impl Stats {
             crossings_left: 0,
             mend_rounds: 0,
             mended_faces: 0,
+            handles_cut: 0,
             drawn_apart: 0,
             flattened: 0,
             samples_lost: 0,

@@ -134,6 +134,7 @@ impl Cells<'_> {
             refine::refine(&mut crust, field, &held, context)?;
         }
         let how = MendOptions {
+            handles: None,
             flatness: 0.0,
             tolerance: Some(0.5 * self.tolerance),
             single: self.single,

@@ -33,6 +33,7 @@ impl Offsets<'_> {
         };
         scaled(&mut joined, self.unit);
         let how = MendOptions {
+            handles: None,
             flatness: 0.0,
             tolerance: None,
             single: self.options.single,

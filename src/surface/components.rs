@@ -212,7 +212,7 @@ pub fn filter_shells(crust: &Crust, filter: &ShellFilter) -> (Crust, Selection) 
 /// Takes out shells that are inside out for where they lie, and says how many
 /// there were.
 pub(crate) fn drop_inverted(crust: &mut Crust) -> usize {
-    drop_shells(crust, false).inverted
+    drop_shells(crust, 0).inverted
 }
 
 /// Shells that were taken out because no solid has them.
@@ -220,21 +220,25 @@ pub(crate) fn drop_inverted(crust: &mut Crust) -> usize {
 pub(crate) struct Strays {
     /// Those that were inside out for where they lay.
     pub inverted: usize,
-    /// Those that passed through fewer than [`FEWEST`] samples.
+    /// Those that passed through fewer samples than were asked for.
     pub specks: usize,
 }
 
 /// The fewest samples that bound a solid, or a cavity.
-const FEWEST: u32 = 4;
+pub(crate) const FEWEST: u32 = 4;
+
+/// The same amid noise: noise was measured by quadrics through so many, and fewer say nothing
+/// about it.
+pub(crate) const FEWEST_AMID_NOISE: u32 = 24;
 
 /// Takes out shells that bound nothing: those inside out, and, beside others,
-/// those through fewer than four samples. The latter are what is left of a ball or two
+/// those through fewer than `fewest` samples. The latter are what is left of a ball or two
 /// that were cut off from the part they belong to, at edges or amid noise.
-pub(crate) fn drop_strays(crust: &mut Crust) -> Strays {
-    drop_shells(crust, true)
+pub(crate) fn drop_strays(crust: &mut Crust, fewest: u32) -> Strays {
+    drop_shells(crust, fewest)
 }
 
-fn drop_shells(crust: &mut Crust, specks: bool) -> Strays {
+fn drop_shells(crust: &mut Crust, fewest: u32) -> Strays {
     if is_one_solid(&crust.mesh) {
         return Strays::default();
     }
@@ -247,11 +251,11 @@ fn drop_shells(crust: &mut Crust, specks: bool) -> Strays {
         inverted,
         specks: 0,
     };
-    if specks && anatomy.len() > 1 {
+    if fewest > 0 && anatomy.len() > 1 {
         let through = samples_by_shell(crust, &anatomy);
-        let sound = |s: usize| kept[s] && through[s] >= FEWEST && !anatomy.is_cavity(s);
+        let sound = |s: usize| kept[s] && through[s] >= fewest && !anatomy.is_cavity(s);
         if (0..anatomy.len()).any(sound) {
-            for (kept, _) in (kept.iter_mut().zip(&through)).filter(|(_, &n)| n < FEWEST) {
+            for (kept, _) in (kept.iter_mut().zip(&through)).filter(|(_, &n)| n < fewest) {
                 strays.specks += usize::from(std::mem::take(kept));
             }
         }
@@ -407,11 +411,11 @@ mod tests {
     #[test]
     fn shells_inside_out_are_taken_out() {
         let mut sound = boxes(&ONION);
-        assert_eq!(drop_strays(&mut sound), Strays::default());
+        assert_eq!(drop_strays(&mut sound, FEWEST), Strays::default());
         assert_eq!(sound.mesh.face_count(), 24);
         let mut crust = boxes(&[(4.0, false), (3.0, false), (0.5, true)]);
         // The box of 3 and the one in it both contradict the one around.
-        let strays = drop_strays(&mut crust);
+        let strays = drop_strays(&mut crust, FEWEST);
         assert_eq!((strays.inverted, strays.specks), (2, 0));
         assert_eq!(crust.mesh.vertices.len(), 8);
         assert_eq!(crust.mesh.volume(), 512.0);
@@ -423,12 +427,12 @@ mod tests {
         for v in &mut crust.vertex_samples[8..13] {
             *v = NONE;
         }
-        let strays = drop_strays(&mut crust);
+        let strays = drop_strays(&mut crust, FEWEST);
         assert_eq!((strays.inverted, strays.specks), (0, 1));
         assert_eq!(crust.mesh.volume(), 512.0);
         // Alone it stays.
         crust.vertex_samples.fill(NONE);
-        assert_eq!(drop_strays(&mut crust), Strays::default());
+        assert_eq!(drop_strays(&mut crust, FEWEST), Strays::default());
     }
 
     #[test]

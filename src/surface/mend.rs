@@ -36,6 +36,7 @@
 //! elsewhere (see the pipeline). That ends, for at the latest where no
 //! cell is inside no surface is left.
 
+use super::handles::cut_handles;
 use super::mend_blocks::coarsen_new;
 use super::mend_coarsen::{coarsen_some, Coarsened};
 use super::mend_local::{mend, Mended, LEVELS};
@@ -75,6 +76,9 @@ pub struct MendOptions<'a> {
     pub keep_samples: bool,
     /// The spacing at each sample, in the units of the mesh.
     pub spacing: &'a (dyn Fn(u32) -> f64 + Sync),
+    /// How long a loop around a handle may be at each sample for the handle to be cut, in the
+    /// units of the mesh; `None` cuts none.
+    pub handles: Option<&'a (dyn Fn(u32) -> f64 + Sync)>,
     /// Each ball, in the units of the mesh.
     pub ball: &'a (dyn Fn(u32) -> Option<Ball> + Sync),
 }
@@ -92,6 +96,8 @@ pub struct Mending {
     pub collapsed: usize,
     /// Edges turned for better angles.
     pub flipped: usize,
+    /// Handles thinner than the noise that were cut.
+    pub handles_cut: usize,
     /// Vertices drawn apart where sheets touched.
     pub drawn_apart: usize,
     /// Pairs of triangles that crossed or touched, and triangles of no area.
@@ -171,6 +177,13 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
         mesh.compact(&mut spacing);
         laps.lap("coarsen");
         unlevel(&mut mesh, UNLEVEL, !options.keep_samples, &spacing, &round);
+    }
+    if let Some(handles) = options.handles {
+        let mut most = Near::of(&mesh).spread(&mesh, |s| length(handles(s)));
+        done.handles_cut = cut_handles(&mut mesh, &mut most, &clash, cx)?;
+        // Near the new vertices.
+        spacing.resize(mesh.points.len(), 0.0);
+        laps.lap("handles");
     }
     let shells = Shells::of(&mesh);
     let moved = draw_apart(&mut mesh, &round);

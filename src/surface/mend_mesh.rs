@@ -33,6 +33,14 @@ pub(crate) struct TriMesh {
     recording: bool,
 }
 
+/// A mesh as it was.
+pub(crate) struct Snapshot {
+    points: Vec<Point>,
+    tris: Vec<[u32; 3]>,
+    twin: Vec<u32>,
+    out: Vec<u32>,
+}
+
 /// What was there before.
 enum Change {
     Corner(u32, u32),
@@ -351,6 +359,22 @@ impl TriMesh {
         self.set_out(b, ub);
     }
 
+    /// A vertex more, at no sample.
+    pub fn add_vertex(&mut self, at: Point) -> u32 {
+        self.points.push(at);
+        self.samples.push(NONE);
+        self.movable.push(true);
+        self.out.push(NONE);
+        self.points.len() as u32 - 1
+    }
+
+    /// A triangle more, whose twins are still to be told.
+    pub fn add_triangle(&mut self, corners: [u32; 3], source: u32) {
+        self.tris.push(corners);
+        self.source.push(source);
+        self.twin.extend([NONE; 3]);
+    }
+
     /// Lets these vertices move.
     pub fn free(&mut self, vertices: &[u32]) {
         for &v in vertices {
@@ -388,6 +412,27 @@ impl TriMesh {
             }
             self.twin[x as usize] = y;
         }
+    }
+
+    /// All that changes.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot {
+            points: self.points.clone(),
+            tris: self.tris.clone(),
+            twin: self.twin.clone(),
+            out: self.out.clone(),
+        }
+    }
+
+    /// Makes the mesh again what it was: vertices and triangles added since go.
+    pub fn restore(&mut self, to: &Snapshot) {
+        self.points.clone_from(&to.points);
+        self.tris.clone_from(&to.tris);
+        self.twin.clone_from(&to.twin);
+        self.out.clone_from(&to.out);
+        self.samples.truncate(self.points.len());
+        self.movable.truncate(self.points.len());
+        self.source.truncate(self.tris.len());
     }
 
     /// From here on changes can be taken back.

@@ -190,6 +190,7 @@ mod tests {
             crust.face_balls.push([NONE; 2]);
         }
         let how = MendOptions {
+            handles: None,
             flatness: 0.0,
             tolerance: None,
             single: false,

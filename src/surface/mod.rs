@@ -9,6 +9,7 @@ mod contract;
 mod extract;
 mod flat;
 mod halfedges;
+mod handles;
 mod mend;
 mod mend_blocks;
 mod mend_coarsen;
@@ -32,7 +33,7 @@ mod unfold;
 
 pub(crate) use clean::clean_counted;
 pub use clean::{clean, CleanOptions};
-pub(crate) use components::{drop_inverted, drop_strays};
+pub(crate) use components::{drop_inverted, drop_strays, FEWEST, FEWEST_AMID_NOISE};
 pub use components::{filter_shells, Keep, MinVolume, Selection, ShellFilter, Shells};
 pub use extract::{raw_crust, Placement};
 pub use mend::{mend_crust, MendOptions, Mending};

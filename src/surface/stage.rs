@@ -23,11 +23,19 @@ use crate::tetra::Complex;
 /// comes to an end.
 const TRIES: usize = 24;
 
+/// Handles amid noise are cut where a loop around them is no longer than so many times the noise.
+///
+/// Of 24 surfaces of 10,000 samples with noise of 0.25, 0.5 and 1 % of the diagonal, 23, 22 and 21 have the right
+/// topology with 3, 23, 22 and 20 with 4.5, where true handles go, and 23, 18 and 15 without.
+const HANDLE: f64 = 3.0;
+
 /// What the stage works on.
 pub(crate) struct Job<'a> {
     pub samples: &'a Samples,
     /// The spacing at each sample, in lattice steps.
     pub spacing: &'a [f64],
+    /// The noise that was at each sample, in lattice steps; empty where there was none.
+    pub noise: &'a [f64],
     pub balls: &'a Balls,
     pub power: &'a mut PowerDiagram,
     pub options: &'a Options,
@@ -164,7 +172,12 @@ impl Job<'_> {
         if first {
             stats.shape_before = Shape::of_triangles(&triangles.mesh);
         }
+        let handle = |s: u32| {
+            let most = HANDLE * self.noise[s as usize];
+            times_power(lattice.length_to_user(most), unit)
+        };
         let how = MendOptions {
+            handles: (!self.noise.is_empty()).then_some(&handle),
             flatness: match options.faces {
                 Faces::Triangles | Faces::None => options.flatness,
                 Faces::Polygons => 0.0,
@@ -198,6 +211,7 @@ impl Job<'_> {
         stats.mend_rounds += mended.rounds;
         stats.mended_faces += mended.changes;
         stats.drawn_apart = mended.drawn_apart;
+        stats.handles_cut = mended.handles_cut;
         stats.flattened = mended.collapsed;
         stats.samples_lost = mended.samples_lost;
         let left = mended.left;
