@@ -154,6 +154,11 @@ impl Samples {
         Ok(made)
     }
 
+    /// The sides of their box, in the user's units.
+    pub fn sides(&self) -> Point {
+        Bounds::of(&self.points).map_or([0.0; 3], |b| [0, 1, 2].map(|k| b.max[k] - b.min[k]))
+    }
+
     /// Whether there are no samples (never, once made).
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()

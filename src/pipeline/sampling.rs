@@ -47,8 +47,9 @@ pub(super) fn sampled(
     let mut left_out = Vec::new();
     let (mut delaunay, mut graph) = triangulated(&samples, clock, stats, context)?;
     if options.outliers == OutlierOption::Auto {
+        let room = samples.sides();
         for _ in 0..OUTLIER_ROUNDS {
-            let Some(found) = outliers(&samples, &graph, &mut stats.outliers) else {
+            let Some(found) = outliers(&samples, &graph, room, &mut stats.outliers) else {
                 break;
             };
             for (s, why) in found.iter().enumerate() {

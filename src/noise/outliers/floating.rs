@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
+use super::doubtful::{chance_spacing, Doubtful};
 use super::{Cloud, Stray};
 use crate::noise::plane::Plane;
 
 /// Edges longer than this many spacings, at either end, join nothing.
-const REACH: f64 = 2.0;
+pub(super) const REACH: f64 = 2.0;
 
 /// Where hardly a sample floats, it must be so many spacings away: among
 /// thousands strewn evenly over a surface some few stand alone.
@@ -19,7 +20,7 @@ const GROWTH: f64 = 0.2;
 const ROUNDS: usize = 3;
 
 /// The spacing at a sample: the length of so manieth shortest of its edges.
-const RANK: usize = 6;
+pub(super) const RANK: usize = 6;
 
 /// Groups that hold more than one in so many samples of the cloud are surface.
 const SURFACE: usize = 20;
@@ -29,14 +30,18 @@ const SMALL: usize = 12;
 
 /// What neighbours are off their plane, over their spacing, where they fill space:
 /// about 0.45 where they are strewn at random.
-const SHEET: f64 = 0.35;
+pub(super) const SHEET: f64 = 0.35;
 
 /// Members of a group looked at.
 const LOOKED_AT: usize = 40;
 
 /// The samples that float, and in how many groups; `None` if there are none.
-/// So many outliers were `found_before`.
-pub(super) fn floating(cloud: &Cloud, found_before: usize) -> Option<(Vec<Option<Stray>>, usize)> {
+/// So many outliers were `found_before`, in a box of this volume.
+pub(super) fn floating(
+    cloud: &Cloud,
+    room: f64,
+    found_before: usize,
+) -> Option<(Vec<Option<Stray>>, usize)> {
     let count = cloud.len() as u32;
     let shortest: Vec<[(f64, u32); RANK]> = (0..count)
         .into_par_iter()
@@ -70,7 +75,7 @@ pub(super) fn floating(cloud: &Cloud, found_before: usize) -> Option<(Vec<Option
         .filter(|&s| !surface(s))
         .map(|s| (root[s as usize], s))
         .collect();
-    if others.is_empty() || others.len() == cloud.len() {
+    if (others.is_empty() && found_before == 0) || others.len() == cloud.len() {
         return None;
     }
     others.sort_unstable();
@@ -91,6 +96,15 @@ pub(super) fn floating(cloud: &Cloud, found_before: usize) -> Option<(Vec<Option
             strays[m as usize] = Some(Stray::Floating);
         }
     }
+    let strewn = found_before + strays.iter().flatten().count();
+    let doubtful = Doubtful {
+        cloud,
+        raw: &raw,
+        spacing: &spacing,
+        limit: chance_spacing(strewn, room),
+        most,
+    };
+    found += doubtful.mark(&mut strays);
     (found > 0).then_some((strays, found))
 }
 
@@ -152,34 +166,39 @@ fn sparse(
     spacing: &[f64],
     surface: &dyn Fn(u32) -> bool,
 ) -> bool {
-    let edges = (members.iter()).flat_map(|&m| cloud.graph.at(m).iter().map(move |&v| (m, v)));
-    let next = edges
-        .filter(|&(_, v)| surface(v))
-        .min_by(|a, b| {
-            let [x, y] = [a, b].map(|e| cloud.dist_sq(e.0, e.1));
-            x.total_cmp(&y).then(a.1.cmp(&b.1))
-        })
-        .map(|e| spacing[e.1 as usize]);
-    let Some(next) = next else {
-        return false;
-    };
-    let mut own: Vec<f64> = members.iter().map(|&m| raw[m as usize]).collect();
-    if median(&mut own) <= REACH * next {
+    if sparser(cloud, members, [raw, spacing], surface) != Some(true) {
         return false;
     }
     let step = members.len().div_ceil(LOOKED_AT);
     let mut off: Vec<f64> = members
         .iter()
         .step_by(step)
-        .map(|&m| roughness(cloud, m))
+        .map(|&m| roughness(cloud, m, &|_| true))
         .collect();
     median(&mut off) > SHEET
 }
 
-/// How far the twelve samples around one are off a plane, root mean square,
+/// Whether samples are farther apart than [`REACH`] times those of a surface where that is next to them;
+/// `None` where it is nowhere.
+pub(super) fn sparser(
+    cloud: &Cloud,
+    members: &[u32],
+    [raw, spacing]: [&[f64]; 2],
+    surface: &dyn Fn(u32) -> bool,
+) -> Option<bool> {
+    let edges = (members.iter()).flat_map(|&m| cloud.graph.at(m).iter().map(move |&v| (m, v)));
+    let next = edges.filter(|&(_, v)| surface(v)).min_by(|a, b| {
+        let [x, y] = [a, b].map(|e| cloud.dist_sq(e.0, e.1));
+        x.total_cmp(&y).then(a.1.cmp(&b.1))
+    });
+    let mut own: Vec<f64> = members.iter().map(|&m| raw[m as usize]).collect();
+    next.map(|e| median(&mut own) > REACH * spacing[e.1 as usize])
+}
+
+/// How far the twelve of `some` samples around one are off a plane, root mean square,
 /// over their spacing.
-fn roughness(cloud: &Cloud, s: u32) -> f64 {
-    let around = cloud.around::<12>(s);
+pub(super) fn roughness(cloud: &Cloud, s: u32, some: &dyn Fn(u32) -> bool) -> f64 {
+    let around = cloud.around::<12>(s, some);
     let around = around.found();
     let Some(far) = around.last() else {
         return 0.0;
@@ -200,20 +219,20 @@ pub(super) fn median(values: &mut [f64]) -> f64 {
 }
 
 /// Disjoint sets of samples; the root of one is its smallest member.
-struct Groups {
+pub(super) struct Groups {
     parent: Vec<u32>,
     size: Vec<u32>,
 }
 
 impl Groups {
-    fn of(count: u32) -> Groups {
+    pub(super) fn of(count: u32) -> Groups {
         Groups {
             parent: (0..count).collect(),
             size: vec![1; count as usize],
         }
     }
 
-    fn root(&mut self, mut s: u32) -> u32 {
+    pub(super) fn root(&mut self, mut s: u32) -> u32 {
         while self.parent[s as usize] != s {
             let up = self.parent[self.parent[s as usize] as usize];
             self.parent[s as usize] = up;
@@ -222,7 +241,7 @@ impl Groups {
         s
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    pub(super) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         if a != b {
             let (low, high) = (a.min(b), a.max(b));

@@ -16,7 +16,11 @@
 //!    denser than the surface next to it must be two spacings of that away, lest it be a
 //!    detail of it. Since the Delaunay edges hold the shortest
 //!    tree through all samples, no pair that counts is missed.
-//! 2. **Beside the surface** (`beside.rs`). If there were some, samples are looked for that
+//! 2. **Doubtful** (`doubtful.rs`). Chains of outliers join to the surface. The number found, in the box
+//!    of the cloud, tells how near the sixth neighbour of one comes by chance: less than one of all is
+//!    expected to have it nearer (Poisson). Samples with it farther off are doubtful; groups of them are
+//!    outliers if sparse beside the surface next to them and no sheet.
+//! 3. **Beside the surface** (`beside.rs`). If there were some, samples are looked for that
 //!    stand off the plane of their neighbours, far more than those do and by more
 //!    than the spacing. Without floating ones nobody would be there.
 //!
@@ -25,6 +29,7 @@
 //! measured.
 
 mod beside;
+mod doubtful;
 mod floating;
 
 use crate::delaunay::Samples;
@@ -63,11 +68,13 @@ pub struct OutlierReport {
 }
 
 /// Looks for outliers; nothing where every sample belongs to a surface. For each
-/// sample why it should be left out. `graph` has the Delaunay edges; the report counts what was found
+/// sample why it should be left out. `graph` has the Delaunay edges, `room` the sides of the box of
+/// all samples before the first call, in the user's units; the report counts what was found
 /// in earlier calls too.
 pub fn outliers(
     samples: &Samples,
     graph: &Edges,
+    room: [f64; 3],
     report: &mut OutlierReport,
 ) -> Option<Vec<Option<Stray>>> {
     let count = samples.len();
@@ -79,7 +86,10 @@ pub fn outliers(
         places: &places,
         graph,
     };
-    let (mut strays, groups) = floating::floating(&cloud, report.left_out)?;
+    let step = samples.lattice.length_to_user(1.0);
+    let room = room.map(|side| side / step);
+    let room = room[0] * room[1] * room[2];
+    let (mut strays, groups) = floating::floating(&cloud, room, report.left_out)?;
     let floating = strays.iter().flatten().count();
     // What is left must bound a solid.
     if count - floating < FEWEST {
@@ -112,11 +122,12 @@ impl Cloud<'_> {
         dist_sq(self.places[a as usize], self.places[b as usize])
     }
 
-    /// Samples near one, itself left out: of those two edges away the nearest.
-    fn around<const MOST: usize>(&self, s: u32) -> Nearest<MOST> {
+    /// Of `some` of the samples those near one, itself left out: of those two edges
+    /// away the nearest.
+    fn around<const MOST: usize>(&self, s: u32, some: &dyn Fn(u32) -> bool) -> Nearest<MOST> {
         const EACH: usize = 8;
         let shortest = |s: u32| {
-            let edges = self.graph.at(s).iter();
+            let edges = self.graph.at(s).iter().filter(|&&v| some(v));
             Nearest::<EACH>::of(edges.map(|&v| (self.dist_sq(s, v), v)))
         };
         let mut all = [0; EACH * (EACH + 1)];
@@ -184,19 +195,28 @@ mod tests {
 
     fn look(points: &[Point]) -> (Vec<Option<Stray>>, OutlierReport) {
         let context = Context::default();
-        let samples = samples(points, 5.0).unwrap();
-        let delaunay = delaunay(&samples, &context).unwrap();
+        let mut samples = samples(points, 5.0).unwrap();
+        let room = samples.sides();
         let progress = Portion {
             context: &context,
             stage: Stage::Delaunay,
             percent: [0, 100],
         };
-        let graph = Edges::of(&delaunay.complex, samples.len(), &progress).unwrap();
         let mut report = OutlierReport::default();
-        let found = outliers(&samples, &graph, &mut report);
-        let found = found.unwrap_or(vec![None; samples.len()]);
-        let of_point = samples.of_input.iter().map(|&s| found[s as usize]);
-        (of_point.collect(), report)
+        let mut of_point = vec![None; points.len()];
+        for _ in 0..4 {
+            let delaunay = delaunay(&samples, &context).unwrap();
+            let graph = Edges::of(&delaunay.complex, samples.len(), &progress).unwrap();
+            let Some(found) = outliers(&samples, &graph, room, &mut report) else {
+                break;
+            };
+            for (&point, &why) in samples.source.iter().zip(&found) {
+                of_point[point as usize] = why;
+            }
+            let keep: Vec<bool> = found.iter().map(Option::is_none).collect();
+            samples = samples.without(&keep, 5.0).unwrap();
+        }
+        (of_point, report)
     }
 
     fn ball(count: u32, radius: f64, centre: f64) -> Vec<Point> {
@@ -230,6 +250,45 @@ mod tests {
             .all(|&f| f == Some(Stray::Floating)));
         assert_eq!(found[2006], Some(Stray::Beside));
         assert_eq!((report.floating, report.groups, report.beside), (6, 4, 1));
+    }
+
+    /// So many samples strewn evenly over the box made larger by a fifth.
+    fn strewn(count: u32) -> Vec<Point> {
+        let mut state = 7_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005);
+            state = state.wrapping_add(1_442_695_040_888_963_407);
+            2.4 * ((state >> 11) as f64 / (1_u64 << 53) as f64) - 1.2
+        };
+        (0..count).map(|_| [next(), next(), next()]).collect()
+    }
+
+    /// Chains of them reach the ball.
+    #[test]
+    fn clumps_of_strewn_samples_are_found() {
+        let mut points = ball(2000, 1.0, 0.0);
+        points.extend(strewn(150));
+        let (found, _) = look(&points);
+        assert!(found[..2000].iter().all(Option::is_none));
+        // More than four spacings off it.
+        let far = |p: &Point| (dist_sq(*p, [0.0; 3]).sqrt() - 1.0).abs() > 0.32;
+        let missed = (points.iter().zip(&found)).filter(|(p, f)| f.is_none() && far(p));
+        let missed = missed.count();
+        assert!(missed == 0, "{missed}");
+    }
+
+    /// Half of the ball is as sparse as the strewn samples are.
+    #[test]
+    fn sparse_sheets_amid_strewn_samples_stay() {
+        let half = |p: &Point, k: usize| p[2] > 0.0 || k % 16 == 0;
+        let points = ball(8000, 1.0, 0.0).into_iter().enumerate();
+        let mut points: Vec<Point> = points.filter(|(k, p)| half(p, *k)).map(|p| p.1).collect();
+        let own = points.len();
+        points.extend(strewn(150));
+        let (found, report) = look(&points);
+        assert!(report.floating > 50);
+        let lost = found[..own].iter().flatten().count();
+        assert!(lost == 0, "{lost}");
     }
 
     /// Twelve vertices of a detail beside a coarse surface, as in
