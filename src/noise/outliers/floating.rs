@@ -96,15 +96,18 @@ pub(super) fn floating(
             strays[m as usize] = Some(Stray::Floating);
         }
     }
+    // Few tell no density.
     let strewn = found_before + strays.iter().flatten().count();
-    let doubtful = Doubtful {
-        cloud,
-        raw: &raw,
-        spacing: &spacing,
-        limit: chance_spacing(strewn, room),
-        most,
-    };
-    found += doubtful.mark(&mut strays);
+    if strewn as f64 >= super::MANY * cloud.len() as f64 && room > 0.0 {
+        let doubtful = Doubtful {
+            cloud,
+            raw: &raw,
+            spacing: &spacing,
+            limit: chance_spacing(strewn, room),
+            most,
+        };
+        found += doubtful.mark(&mut strays);
+    }
     (found > 0).then_some((strays, found))
 }
 

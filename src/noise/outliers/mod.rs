@@ -19,7 +19,7 @@
 //! 2. **Doubtful** (`doubtful.rs`). Chains of outliers join to the surface. The number found, in the box
 //!    of the cloud, tells how near the sixth neighbour of one comes by chance: less than one of all is
 //!    expected to have it nearer (Poisson). Samples with it farther off are doubtful; groups of them are
-//!    outliers if sparse beside the surface next to them and no sheet.
+//!    outliers if sparse beside the surface next to them and no sheet. Not asked where less than one in 500 floats.
 //! 3. **Beside the surface** (`beside.rs`). If there were some, samples are looked for that
 //!    stand off the plane of their neighbours, far more than those do and by more
 //!    than the spacing. Without floating ones nobody would be there.
@@ -41,7 +41,7 @@ use crate::tetra::Edges;
 const FEWEST: usize = 200;
 
 /// The share of the samples that must float before lone ones close by are
-/// outliers, and those beside the surface are looked for.
+/// outliers, and doubtful ones and those beside the surface are looked for.
 const MANY: f64 = 0.002;
 
 /// Why a sample was left out.
@@ -263,18 +263,18 @@ mod tests {
         (0..count).map(|_| [next(), next(), next()]).collect()
     }
 
-    /// Chains of them reach the ball.
+    /// Chains of them reach the ball: 52 stay if nobody asks how near chance brings them.
     #[test]
-    fn clumps_of_strewn_samples_are_found() {
-        let mut points = ball(2000, 1.0, 0.0);
-        points.extend(strewn(150));
+    fn most_chains_of_strewn_samples_are_found() {
+        let mut points = ball(4000, 1.0, 0.0);
+        points.extend(strewn(400));
         let (found, _) = look(&points);
-        assert!(found[..2000].iter().all(Option::is_none));
+        assert!(found[..4000].iter().all(Option::is_none));
         // More than four spacings off it.
-        let far = |p: &Point| (dist_sq(*p, [0.0; 3]).sqrt() - 1.0).abs() > 0.32;
+        let far = |p: &Point| (dist_sq(*p, [0.0; 3]).sqrt() - 1.0).abs() > 0.224;
         let missed = (points.iter().zip(&found)).filter(|(p, f)| f.is_none() && far(p));
         let missed = missed.count();
-        assert!(missed == 0, "{missed}");
+        assert!(missed <= 15, "{missed}");
     }
 
     /// Half of the ball is as sparse as the strewn samples are.
