@@ -280,7 +280,7 @@ mod tests {
     /// Half of the ball is as sparse as the strewn samples are.
     #[test]
     fn sparse_sheets_amid_strewn_samples_stay() {
-        let half = |p: &Point, k: usize| p[2] > 0.0 || k % 16 == 0;
+        let half = |p: &Point, k: usize| p[2] > 0.0 || k.is_multiple_of(16);
         let points = ball(8000, 1.0, 0.0).into_iter().enumerate();
         let mut points: Vec<Point> = points.filter(|(k, p)| half(p, *k)).map(|p| p.1).collect();
         let own = points.len();
