@@ -105,10 +105,11 @@ pub fn noise(plan: &Plan, noise: &NoiseReport) {
         plan.talk.at(
             Talk::Verbose,
             format_args!(
-                "--noise auto: quadrics through 12 samples miss them by {:.3} of the spacing, those through 24 by {:.2} times as much, through 48 by {:.2} times more: {}",
+                "--noise auto: quadrics through 12 samples miss them by {:.3} of the spacing, those through 24 by {:.2} times as much, through 48 by {:.2} times more; neighbours differ by {:.2} of what is missed: {}",
                 level.share,
                 level.growth,
                 level.further_growth,
+                level.independence,
                 if level.noisy { "noise" } else { "no noise" }
             ),
         );
