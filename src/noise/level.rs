@@ -191,8 +191,8 @@ mod tests {
             .map(|k| {
                 let (x, y) = match even {
                     true => (
-                        f64::from(k % 63) + next() * 0.4,
-                        f64::from(k / 63) + next() * 0.4,
+                        f64::from(k % 63) + next() * 0.5,
+                        f64::from(k / 63) + next() * 0.5,
                     ),
                     false => (next() * 63.0, next() * 63.0),
                 };
@@ -216,7 +216,7 @@ mod tests {
         assert!(clean.share > LEAST_SHARE, "{clean:?}");
         assert!(!clean.noisy, "{clean:?}");
         // Neighbours farther from each other differ more.
-        let even = waves(3.0, 0.0, true);
+        let even = waves(1.2, 0.0, true);
         assert!(even.share > LEAST_SHARE, "{even:?}");
         assert!(even.independence < 0.45 && !even.noisy, "{even:?}");
         // Hardly any of either.
