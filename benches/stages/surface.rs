@@ -92,6 +92,7 @@ fn mend(bencher: Bencher, cloud: Cloud) {
     let run = stages(cloud);
     let crust = surface::triangulate(&polygons(run));
     let how = MendOptions {
+        handles: None,
         flatness: Options::default().flatness,
         tolerance: None,
         single: false,
