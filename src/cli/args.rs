@@ -176,7 +176,7 @@ pub struct Reconstruct {
     /// L is your estimate of how densely the surface is sampled, as the
     /// distance between samples over the distance to the medial axis. Helps
     /// with noise and sharp edges. `auto` takes 0.4 for samples amid noise of
-    /// more than 0.4 of their spacing, and keeps every pole of the others;
+    /// more than twice their spacing, and keeps every pole of the others;
     /// `off` keeps every pole. By default auto; -v tells what was taken.
     #[arg(long, value_name = "L", value_parser = wanted::lambda, allow_hyphen_values = true, help_heading = METHOD)]
     pub lambda: Option<LambdaOption>,

@@ -96,6 +96,7 @@ pub fn run(plan: &Plan) -> Result<ExitCode, Failure> {
     tell::outliers(plan.talk, &result.stats.outliers);
     tell::noise(plan, &result.stats.noise);
     tell::lambda(plan, &result.stats);
+    tell::cut(plan, &result.stats);
     tell::edges(plan, &result.stats);
     tell::outward(plan, &cloud, &result.stats.outward);
 

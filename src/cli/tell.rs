@@ -60,7 +60,7 @@ pub fn lambda(plan: &Plan, stats: &Stats) {
     let found = &stats.lambda;
     let line = match (found.lambda, found.chosen) {
         (Some(lambda), true) => format!(
-            "--lambda auto: {lambda} for {} amid noise of more than {LOUD} of the spacing: {} dropped",
+            "--lambda auto: {lambda} for {} amid noise of more than {LOUD} spacings: {} dropped",
             counted(found.asked, "sample", "samples"),
             counted(stats.poles_dropped as usize, "pole", "poles"),
         ),
@@ -69,10 +69,22 @@ pub fn lambda(plan: &Plan, stats: &Stats) {
             counted(stats.poles_dropped as usize, "pole", "poles"),
             counted(stats.skinny_samples as usize, "sample", "samples"),
         ),
-        (None, true) => "--lambda auto: every pole kept, for want of noise".to_owned(),
+        (None, true) => "--lambda auto: every pole kept, for want of so much noise".to_owned(),
         (None, false) => return,
     };
     plan.talk.at(Talk::Verbose, line);
+}
+
+/// Says how many handles amid noise were cut, and how many specks taken out.
+pub fn cut(plan: &Plan, stats: &Stats) {
+    if stats.handles_cut + stats.specks > 0 {
+        let line = format!(
+            "{} thinner than the noise cut, {} taken out",
+            counted(stats.handles_cut, "handle", "handles"),
+            counted(stats.specks, "speck", "specks"),
+        );
+        plan.talk.at(Talk::Verbose, line);
+    }
 }
 
 /// Says how many samples lie at sharp edges, where that was asked of their

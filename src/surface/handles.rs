@@ -28,7 +28,7 @@ const BACK: f64 = 0.2;
 const MOST_AROUND: usize = 400;
 
 /// Cuts handles around which a loop runs that is no longer than `most` at one of its vertices;
-/// returns how many were cut.
+/// returns how many were cut. `most` grows with the vertices; `round` gives positions that can be written.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -36,6 +36,7 @@ pub(super) fn cut_handles(
     mesh: &mut TriMesh,
     most: &mut Vec<f64>,
     clash: &Clash,
+    round: &dyn Fn(Point) -> Point,
     cx: &Context,
 ) -> Result<usize, Cancelled> {
     let mut total = 0;
@@ -67,7 +68,7 @@ pub(super) fn cut_handles(
                 if !whole || refused.contains(&name) || !flood.hangs_together(mesh, around) {
                     continue;
                 }
-                for t in cut(mesh, most, around) {
+                for t in cut(mesh, most, around, round) {
                     cuts.insert(t, name.clone());
                 }
             }
@@ -344,7 +345,12 @@ impl Flood {
 
 /// Cuts the surface along a loop and closes both ends around a vertex in the middle. The triangles that
 /// changed or are new; `values` at the vertices grow with them.
-fn cut(mesh: &mut TriMesh, values: &mut Vec<f64>, around: &[u32]) -> Vec<u32> {
+fn cut(
+    mesh: &mut TriMesh,
+    values: &mut Vec<f64>,
+    around: &[u32],
+    round: &dyn Fn(Point) -> Point,
+) -> Vec<u32> {
     let count = around.len();
     let ends: Vec<u32> = around.iter().map(|&h| mesh.tail(h)).collect();
     let twins: Vec<u32> = around.iter().map(|&h| mesh.twin(h)).collect();
@@ -387,7 +393,7 @@ fn cut(mesh: &mut TriMesh, values: &mut Vec<f64>, around: &[u32]) -> Vec<u32> {
                 .filter(|w| !copies.contains(w))
                 .collect();
             let sum = (others.iter()).fold([0.0; 3], |s, &w| add(s, sub(mesh.at(w), at)));
-            add(at, scale(sum, BACK / others.len().max(1) as f64))
+            round(add(at, scale(sum, BACK / others.len().max(1) as f64)))
         })
         .collect();
     for (&copy, &p) in copies.iter().zip(&moved) {
@@ -396,7 +402,7 @@ fn cut(mesh: &mut TriMesh, values: &mut Vec<f64>, around: &[u32]) -> Vec<u32> {
     // Caps.
     let middle = |mesh: &TriMesh, of: &[u32]| {
         let sum = of.iter().fold([0.0; 3], |s, &v| add(s, mesh.at(v)));
-        scale(sum, 1.0 / of.len() as f64)
+        round(scale(sum, 1.0 / of.len() as f64))
     };
     for (edges, of) in [(around, &ends), (&twins, &copies)] {
         values.push(values[of[0] as usize]);

@@ -180,7 +180,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
     }
     if let Some(handles) = options.handles {
         let mut most = Near::of(&mesh).spread(&mesh, |s| length(handles(s)));
-        done.handles_cut = cut_handles(&mut mesh, &mut most, &clash, cx)?;
+        done.handles_cut = cut_handles(&mut mesh, &mut most, &clash, &round, cx)?;
         // Near the new vertices.
         spacing.resize(mesh.points.len(), 0.0);
         laps.lap("handles");
