@@ -8,7 +8,8 @@
 //! 1. **Is there noise?** (`level.rs`) Quadrics fitted to the nearest 12, 24
 //!    and 48 samples miss them by a share of the spacing. What noise leaves
 //!    does not depend on how many samples are fitted; what shape leaves, grows
-//!    with them. Where it grows, or is small, nothing is done: the result is
+//!    with them; and what noise leaves at a sample says nothing of its neighbour. Where it
+//!    grows and neighbours agree, or is small, nothing is done: the result is
 //!    the same to the last bit as without this module.
 //! 2. **How much where?** (`local.rs`) The same, at every sample: a low
 //!    quantile over the neighbours, so that edges do not count as noise.
