@@ -147,3 +147,62 @@ fn outliers_are_left_out_and_reported() {
     );
     assert_eq!(auto.crust.mesh, keep.crust.mesh);
 }
+
+/// Two plates of 2 by 2, so far apart, with noise.
+fn noisy_plates(apart: f64, deviation: f64) -> Vec<Point> {
+    let mut next = numbers(2);
+    (0..3000)
+        .map(|k| {
+            let mut gauss = || {
+                let (u, v) = (1.0 - next(), next());
+                (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+            };
+            let off = [gauss(), gauss(), gauss()].map(|v| deviation * v);
+            let height = if k % 2 == 0 { apart } else { 0.0 };
+            [
+                2.0 * next() + off[0],
+                2.0 * next() + off[1],
+                height + off[2],
+            ]
+        })
+        .collect()
+}
+
+/// Between two plates ten times the noise apart there are pinholes without that.
+#[test]
+fn handles_thinner_than_the_noise_are_cut() {
+    let points = noisy_plates(0.3, 0.03);
+    let result = reconstruct(&points, &Options::default(), &Context::default()).unwrap();
+    assert!(result.stats.noise.treated && result.stats.handles_cut > 0);
+    let check = powercrust::mesh::check;
+    let found = check(
+        &result.crust.mesh,
+        &powercrust::mesh::CheckOptions::default(),
+        &Context::default(),
+    );
+    let found = found.unwrap();
+    assert!(found.is_watertight());
+    assert_eq!((found.genus, found.components), (Some(0), 1));
+    // Nor do threads or the order of the input matter there.
+    let context = Context {
+        threads: std::num::NonZeroUsize::new(3),
+        ..Context::default()
+    };
+    let reversed: Vec<Point> = points.into_iter().rev().collect();
+    let again = reconstruct(&reversed, &Options::default(), &context).unwrap();
+    assert_eq!(result.crust.mesh, again.crust.mesh);
+}
+
+/// A shell through more than four samples, but fewer than noise is measured by.
+#[test]
+fn specks_amid_noise_are_taken_out() {
+    let points = noisy_plates(0.25, 0.05);
+    let result = reconstruct(&points, &Options::default(), &Context::default()).unwrap();
+    assert_eq!(result.stats.specks, 1);
+    let report = powercrust::mesh::check(
+        &result.crust.mesh,
+        &powercrust::mesh::CheckOptions::default(),
+        &Context::default(),
+    );
+    assert_eq!(report.unwrap().components, 1);
+}

@@ -8,6 +8,7 @@
 //! balls.
 
 use crate::geom::vec3::{cross, dist_sq, norm, sub};
+use crate::geom::Sets;
 use crate::surface::PowerShape;
 
 /// 'None' among the numbers of parts.
@@ -150,27 +151,14 @@ fn seam_ends(shape: &PowerShape, is_seam: &dyn Fn(usize) -> bool) -> Vec<usize> 
     ends
 }
 
-fn find(sets: &mut [u32], mut v: u32) -> u32 {
-    while sets[v as usize] != v {
-        sets[v as usize] = sets[sets[v as usize] as usize];
-        v = sets[v as usize];
-    }
-    v
-}
-
-fn join(sets: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (find(sets, a), find(sets, b));
-    sets[a.max(b) as usize] = a.min(b);
-}
-
 /// Numbers the classes of items by a size, largest first; items without a
 /// class get [`NO_PART`]. Returns the numbers and the sizes in order.
-fn number(sets: &mut [u32], size: &[f64], there: &dyn Fn(usize) -> bool) -> (Vec<u32>, usize) {
+fn number(sets: &mut Sets, size: &[f64], there: &dyn Fn(usize) -> bool) -> (Vec<u32>, usize) {
     let mut total: Vec<f64> = vec![0.0; sets.len()];
     let mut roots: Vec<u32> = Vec::new();
     for i in 0..sets.len() {
         if there(i) {
-            let root = find(sets, i as u32);
+            let root = sets.find(i as u32);
             if root as usize == i {
                 roots.push(root);
             }
@@ -187,17 +175,17 @@ fn number(sets: &mut [u32], size: &[f64], there: &dyn Fn(usize) -> bool) -> (Vec
         of_root[root as usize] = n as u32;
     }
     let numbers = (0..sets.len()).map(|i| match there(i) {
-        true => of_root[find(sets, i as u32) as usize],
+        true => of_root[sets.find(i as u32) as usize],
         false => NO_PART,
     });
     (numbers.collect(), roots.len())
 }
 
 fn sheets(shape: &PowerShape, at_edge: &[Vec<u32>], out: &mut Structure) {
-    let mut sets: Vec<u32> = (0..shape.triangles.len() as u32).collect();
+    let mut sets = Sets::new(shape.triangles.len());
     for triangles in at_edge {
         if let &[a, b] = &triangles[..] {
-            join(&mut sets, a, b);
+            sets.join(a, b);
         }
     }
     let area = |t: &[u32; 3]| {
@@ -249,13 +237,15 @@ impl Chains<'_> {
         through: &dyn Fn(u32) -> bool,
     ) -> (Vec<Curve>, Vec<u32>) {
         let edges = &self.shape.edges;
-        let mut sets: Vec<u32> = (0..edges.len() as u32).collect();
+        let mut sets = Sets::new(edges.len());
         let mut met = vec![NO_PART; self.shape.balls.len()];
         for (e, edge) in edges.iter().enumerate().filter(|(e, _)| there(*e)) {
             for &v in edge.iter().filter(|&&v| through(v)) {
                 match std::mem::replace(&mut met[v as usize], e as u32) {
                     NO_PART => {}
-                    other => join(&mut sets, other, e as u32),
+                    other => {
+                        sets.join(other, e as u32);
+                    }
                 }
             }
         }

@@ -5,10 +5,12 @@
 
 mod ball;
 mod bounds;
+mod sets;
 pub mod vec3;
 
 pub use ball::{Ball, Side};
 pub use bounds::Bounds;
+pub(crate) use sets::Sets;
 
 /// A point in space, in the units of the input.
 pub type Point = [f64; 3];

@@ -6,6 +6,7 @@
 //! by shared edges form a shell.
 
 use super::soup::Faces;
+use crate::geom::Sets;
 
 /// Faces at an edge that are not two of opposite direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,40 +50,6 @@ pub(super) struct Topology {
     /// For each corner the one whose half-edge runs the other way, where every
     /// edge has two.
     pub twins: Option<Vec<u32>>,
-}
-
-/// Disjoint sets of `0..n`; the smallest member stands for a set.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(n: usize) -> Sets {
-        Sets((0..n as u32).collect())
-    }
-
-    fn find(&mut self, mut x: u32) -> u32 {
-        while self.0[x as usize] != x {
-            let up = self.0[self.0[x as usize] as usize];
-            self.0[x as usize] = up;
-            x = up;
-        }
-        x
-    }
-
-    fn join(&mut self, x: u32, y: u32) {
-        let (x, y) = (self.find(x), self.find(y));
-        if x != y {
-            self.0[x.max(y) as usize] = x.min(y);
-        }
-    }
-
-    /// Every member's smallest companion.
-    fn flatten(mut self) -> Vec<u32> {
-        for x in 0..self.0.len() {
-            // Parents are smaller, so theirs are final already.
-            self.0[x] = self.0[self.0[x] as usize];
-        }
-        self.0
-    }
 }
 
 /// Labels `0..count` in order of first appearance, from representatives that

@@ -160,13 +160,19 @@ fn kurtosis(heights: &[f64]) -> f64 {
 /// heights, and over the mean square of the distances between those neighbours in units of the
 /// squared reach by the number.
 fn independence(offsets: &[Point], heights: &[f64], reach: f64) -> f64 {
-    let (mut differences, mut squares, mut ways) = (0.0, 0.0, 0.0);
+    let mut nearest = vec![(f64::INFINITY, 0); offsets.len()];
     for (s, &from) in offsets.iter().enumerate() {
-        let others = (offsets.iter().enumerate()).filter(|&(t, _)| t != s);
-        let nearest = others
-            .map(|(t, &to)| (dist_sq(from, to), t))
-            .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let Some((way, t)) = nearest else { continue };
+        for (t, &to) in offsets.iter().enumerate().skip(s + 1) {
+            let way = dist_sq(from, to);
+            for (one, other) in [(s, t), (t, s)] {
+                if way < nearest[one].0 {
+                    nearest[one] = (way, other);
+                }
+            }
+        }
+    }
+    let (mut differences, mut squares, mut ways) = (0.0, 0.0, 0.0);
+    for (s, &(way, t)) in nearest.iter().enumerate() {
         differences += (heights[s] - heights[t]).powi(2);
         squares += heights[s].powi(2);
         ways += way;

@@ -12,6 +12,7 @@
 use std::collections::HashMap;
 
 use super::incidence::{Cofaces, Incidence, Simplices};
+use crate::geom::Sets;
 
 /// The Betti numbers of a complex: parts, tunnels, voids; the last is not 0
 /// only where tetrahedra enclose a solid that space cannot hold.
@@ -184,30 +185,6 @@ fn squeeze<const N: usize>(
         queue.extend(boundary.iter().filter(|&&f| f != face));
     }
     cofaces
-}
-
-/// Disjoint sets.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Sets {
-        Sets((0..count as u32).collect())
-    }
-
-    fn find(&mut self, mut v: u32) -> u32 {
-        while self.0[v as usize] != v {
-            self.0[v as usize] = self.0[self.0[v as usize] as usize];
-            v = self.0[v as usize];
-        }
-        v
-    }
-
-    /// Whether they were apart.
-    fn join(&mut self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-        a != b
-    }
 }
 
 /// The dimension of the space of solutions of equations over Z/2, each the

@@ -6,7 +6,7 @@
 //! to the smallest part around it and goes where that goes. What lies free
 //! within a cavity is a part of its own: it goes when the cavity is filled.
 
-use crate::geom::Bounds;
+use crate::geom::{Bounds, Sets};
 use crate::mesh::{Anatomy, PolygonMesh};
 
 use super::raw::{Crust, NONE};
@@ -278,25 +278,14 @@ fn is_one_solid(mesh: &PolygonMesh) -> bool {
         return false;
     }
     // Vertices in one set are joined by edges.
-    let mut parent: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
-    let root = |parent: &mut [u32], mut v: u32| {
-        while parent[v as usize] != v {
-            parent[v as usize] = parent[parent[v as usize] as usize];
-            v = parent[v as usize];
-        }
-        v
-    };
-    let mut sets = mesh.vertices.len();
+    let mut sets = Sets::new(mesh.vertices.len());
+    let mut count = mesh.vertices.len();
     for f in 0..mesh.face_count() {
         for pair in mesh.face(f).windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|v| root(&mut parent, v));
-            if a != b {
-                parent[a.max(b) as usize] = a.min(b);
-                sets -= 1;
-            }
+            count -= usize::from(sets.join(pair[0], pair[1]));
         }
     }
-    sets == 1
+    count == 1
 }
 
 /// How many samples each shell passes through.

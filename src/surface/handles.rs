@@ -18,7 +18,7 @@ use super::mend_mesh::{next, prev, TriMesh};
 use super::raw::NONE;
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::{add, dist_sq, scale, sub};
-use crate::geom::Point;
+use crate::geom::{Point, Sets};
 use crate::mesh::clash::Clash;
 
 /// How far an end draws back, as a share of the way to its neighbours.
@@ -27,8 +27,12 @@ const BACK: f64 = 0.2;
 /// Vertices looked at around one at most.
 const MOST_AROUND: usize = 400;
 
+/// Times that cuts are tried at most: each time those that make crossings are left out.
+const TRIES: usize = 16;
+
 /// Cuts handles around which a loop runs that is no longer than `most` at one of its vertices;
-/// returns how many were cut. `most` grows with the vertices; `round` gives positions that can be written.
+/// returns how many were cut. `most` grows with the vertices; `round` gives positions that can be
+/// written.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -40,65 +44,59 @@ pub(super) fn cut_handles(
     cx: &Context,
 ) -> Result<usize, Cancelled> {
     let mut total = 0;
-    let mut refused: Vec<Vec<u32>> = Vec::new();
+    // Vertices of loops along which a cut made a crossing.
+    let mut refused: BTreeSet<u32> = BTreeSet::new();
     // Cutting makes no handles: later only where there were some.
     let mut starts: Vec<u32> = (0..mesh.points.len() as u32)
         .filter(|&v| most[v as usize] > 0.0 && mesh.out[v as usize] != NONE)
         .collect();
-    loop {
+    for _ in 0..TRIES {
         cx.advance(Stage::Crust, 1, 3)?;
         let mut loops = short_loops(mesh, most, &starts);
         starts = loops.iter().map(|l| mesh.tail(l[0])).collect();
         starts.sort_unstable();
-        loops.retain(|l| !refused.contains(&key(mesh, l)));
+        loops.retain(|l| !l.iter().any(|&h| refused.contains(&mesh.tail(h))));
         if loops.is_empty() {
-            return Ok(total);
+            break;
         }
-        // Cuts are tried together, and again without those that make crossings.
-        let before = mesh.snapshot();
-        let values = most.len();
-        loop {
-            let mut flood = Flood::new(mesh);
-            let mut cuts: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-            for around in &loops {
-                let name = key(mesh, around);
-                let whole = around.iter().enumerate().all(|(k, &h)| {
-                    mesh.alive(h / 3) && mesh.head(h) == mesh.tail(around[(k + 1) % around.len()])
-                });
-                if !whole || refused.contains(&name) || !flood.hangs_together(mesh, around) {
-                    continue;
-                }
-                for t in cut(mesh, most, around, round) {
-                    cuts.insert(t, name.clone());
-                }
-            }
-            let tree = clash.tree(&mesh.points, &mesh.tris);
-            let touched: Vec<u32> = cuts.keys().copied().collect();
-            let pairs = clash.pairs_of(&tree, &mesh.points, &mesh.tris, &touched);
-            let bad: Vec<Vec<u32>> = (pairs.iter())
-                .flat_map(|&(s, t)| [s, t])
-                .filter_map(|t| cuts.get(&t).cloned())
-                .collect();
-            if bad.is_empty() {
-                let names: BTreeSet<_> = cuts.values().collect();
-                total += names.len();
-                if names.is_empty() {
-                    return Ok(total);
-                }
-                break;
-            }
-            refused.extend(bad);
+        let (before, values) = (mesh.snapshot(), most.len());
+        let made = cut_all(mesh, most, &loops, round);
+        let tree = clash.tree(&mesh.points, &mesh.tris);
+        let touched: Vec<u32> = made.keys().copied().collect();
+        let pairs = clash.pairs_of(&tree, &mesh.points, &mesh.tris, &touched);
+        let bad = (pairs.iter()).flat_map(|&(s, t)| [s, t]);
+        let bad: BTreeSet<usize> = bad.filter_map(|t| made.get(&t).copied()).collect();
+        if bad.is_empty() {
+            total += made.values().collect::<BTreeSet<_>>().len();
+        } else {
             mesh.restore(&before);
             most.truncate(values);
+            let edges = bad.iter().flat_map(|&k| &loops[k]);
+            refused.extend(edges.map(|&h| mesh.tail(h)));
         }
     }
+    Ok(total)
 }
 
-/// The vertices of a loop, ascending.
-fn key(mesh: &TriMesh, around: &[u32]) -> Vec<u32> {
-    let mut key: Vec<u32> = around.iter().map(|&h| mesh.tail(h)).collect();
-    key.sort_unstable();
-    key
+/// Cuts along loops that still part nothing when it is their turn. The triangles that are
+/// new or changed, with the number of the loop.
+fn cut_all(
+    mesh: &mut TriMesh,
+    most: &mut Vec<f64>,
+    loops: &[Vec<u32>],
+    round: &dyn Fn(Point) -> Point,
+) -> BTreeMap<u32, usize> {
+    let mut flood = Flood::new(mesh);
+    let mut made = BTreeMap::new();
+    for (k, around) in loops.iter().enumerate() {
+        let next = |i: usize| around[(i + 1) % around.len()];
+        let mut edges = around.iter().enumerate();
+        let whole = edges.all(|(i, &h)| mesh.head(h) == mesh.tail(next(i)));
+        if whole && flood.hangs_together(mesh, around) {
+            made.extend(cut(mesh, most, around, round).into_iter().map(|t| (t, k)));
+        }
+    }
+    made
 }
 
 /// Loops of half-edges that are short, bound no disc and part nothing: the shortest through each
@@ -127,7 +125,7 @@ struct Around {
     /// The set of each triangle, if all its corners are in the list.
     face: Vec<u32>,
     faces: Vec<u32>,
-    sets: Vec<u32>,
+    sets: Sets,
 }
 
 impl Around {
@@ -138,7 +136,7 @@ impl Around {
             place: vec![NONE; mesh.points.len()],
             face: vec![NONE; mesh.tris.len()],
             faces: Vec::new(),
-            sets: Vec::new(),
+            sets: Sets::default(),
         }
     }
 
@@ -221,16 +219,14 @@ impl Around {
             });
         }
         let outside = self.faces.len() as u32;
-        self.sets.clear();
-        self.sets.extend(0..=outside);
+        self.sets.reset(self.faces.len() + 1);
         closing.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
         closing.retain(|&(_, h)| {
             let [a, b] = [h, mesh.twin(h)].map(|h| match self.face[h as usize / 3] {
-                NONE => root(&mut self.sets, outside),
-                set => root(&mut self.sets, set),
+                NONE => outside,
+                set => set,
             });
-            self.sets[a.max(b) as usize] = a.min(b);
-            a == b
+            !self.sets.join(a, b)
         });
         closing.retain(|&(length, _)| length <= most);
         closing.reverse();
@@ -273,15 +269,6 @@ fn each_around(mesh: &TriMesh, v: u32, mut call: impl FnMut(u32)) {
             return;
         }
     }
-}
-
-/// The set that an item is in.
-fn root(sets: &mut [u32], mut k: u32) -> u32 {
-    while sets[k as usize] != k {
-        sets[k as usize] = sets[sets[k as usize] as usize];
-        k = sets[k as usize];
-    }
-    k
 }
 
 /// Floods the surface from both sides of a loop.
@@ -499,9 +486,9 @@ mod tests {
     }
 
     /// Mends it with handles cut around which loops up to this length run; what is left must be sound.
-    fn mended(crust: Crust, most: f64) -> Mending {
+    fn mended(crust: Crust, most: impl Fn(u32) -> f64 + Sync) -> Mending {
         let how = MendOptions {
-            handles: Some(&|_| most),
+            handles: Some(&most),
             flatness: 0.0,
             tolerance: None,
             single: false,
@@ -527,9 +514,9 @@ mod tests {
     fn a_thin_handle_is_cut_once_where_it_is_thinnest() {
         // Eight sides of a circle of radius 0.1 are 0.612 long.
         let ring = || tube(true, |t| 0.1 + 0.1 * t * (1.0 - t));
-        let cut = mended(ring(), 0.62);
+        let cut = mended(ring(), |_| 0.62);
         assert_eq!((cut.handles_cut, euler(&cut)), (1, 2));
-        let kept = mended(ring(), 0.6);
+        let kept = mended(ring(), |_| 0.6);
         assert_eq!((kept.handles_cut, euler(&kept)), (0, 0));
     }
 
@@ -537,16 +524,35 @@ mod tests {
     fn the_cut_leaves_the_solid_where_it_was() {
         let before = tube(true, |_| 0.1);
         let volume = before.mesh.volume();
-        let cut = mended(before, 0.7);
+        let cut = mended(before, |_| 0.7);
         assert_eq!(cut.handles_cut, 1);
         let lost = 1.0 - cut.crust.mesh.volume() / volume;
         assert!((0.0..0.02).contains(&lost), "{lost}");
     }
 
+    /// A thread within the tube is in the way of every cap.
+    #[test]
+    fn what_would_cross_is_not_cut() {
+        let mut crust = tube(true, |_| 0.1);
+        let shift = crust.mesh.vertices.len() as u32;
+        let mut thread = tube(true, |_| 0.01);
+        for t in thread.mesh.corners.chunks_exact_mut(3) {
+            t.swap(1, 2);
+        }
+        crust.mesh.vertices.extend(&thread.mesh.vertices);
+        for t in thread.mesh.corners.chunks_exact(3) {
+            crust.mesh.push_face(&[t[0], t[1], t[2]].map(|v| v + shift));
+        }
+        crust.vertex_samples.extend(shift..2 * shift);
+        crust.face_balls = vec![[NONE; 2]; crust.mesh.face_count()];
+        let kept = mended(crust, |s| if s < shift { 0.7 } else { 0.0 });
+        assert_eq!((kept.handles_cut, euler(&kept)), (0, 0));
+    }
+
     #[test]
     fn a_neck_between_two_parts_stays() {
         let neck = tube(false, |t| 0.05 + (t - 0.5).abs());
-        let kept = mended(neck, 2.0);
+        let kept = mended(neck, |_| 2.0);
         assert_eq!((kept.handles_cut, euler(&kept)), (0, 2));
     }
 
@@ -574,7 +580,7 @@ mod tests {
             }
         }
         crust.face_balls = vec![[NONE; 2]; crust.mesh.face_count()];
-        let cut = mended(crust, 0.2);
+        let cut = mended(crust, |_| 0.2);
         assert_eq!((cut.handles_cut, euler(&cut)), (1, 4));
     }
 }

@@ -27,7 +27,8 @@
 //!   say so; vertices leave the plane by a hair (`unlevel`), samples by no more
 //!   than what tells two of them apart, and not where all must be met.
 //!
-//! Before all that, power vertices are moved onto the surface (`mend_place`).
+//! Before all that, power vertices are moved onto the surface (`mend_place`), and amid noise
+//! handles thinner than it are cut (`handles`).
 //!
 //! What an exact search of all pairs still finds is mended on the spot by
 //! small changes that are kept only if the exact count of bad contacts falls
@@ -181,7 +182,7 @@ pub fn mend_crust(crust: Crust, options: &MendOptions, cx: &Context) -> Result<M
     if let Some(handles) = options.handles {
         let mut most = Near::of(&mesh).spread(&mesh, |s| length(handles(s)));
         done.handles_cut = cut_handles(&mut mesh, &mut most, &clash, &round, cx)?;
-        // Near the new vertices.
+        // Vertices of caps stay where they are.
         spacing.resize(mesh.points.len(), 0.0);
         laps.lap("handles");
     }

@@ -2,10 +2,11 @@
 //!
 //! Triangle `t` has the half-edges `3 t`, `3 t + 1`, `3 t + 2`, each starting
 //! at its corner; a half-edge knows its twin and a vertex one half-edge that
-//! starts there. Two operations change the mesh, [`TriMesh::collapse`] and
+//! starts there. Two operations mend the mesh, [`TriMesh::collapse`] and
 //! [`TriMesh::flip`]; both keep it a closed manifold without double edges as
-//! long as their `can_` says so. All changes go through a journal while it is
-//! open, so that a change can be tried and taken back.
+//! long as their `can_` says so. Their changes go through a journal while it is
+//! open, so that a change can be tried and taken back. Cutting handles (`handles.rs`) adds vertices
+//! and triangles, many at once, and goes back to a snapshot.
 
 use super::raw::{Crust, NONE};
 use crate::geom::{Bounds, Point};

@@ -34,7 +34,7 @@ pub(super) fn beside(cloud: &Cloud, strays: &mut [Option<Stray>]) -> usize {
 
 /// Whether a sample is off the plane of those around it.
 fn is_off(cloud: &Cloud, s: u32) -> bool {
-    let around = cloud.around::<AROUND>(s, &|_| true);
+    let around = cloud.around::<AROUND>(s, |_| true);
     if around.found().len() < AROUND {
         return false;
     }

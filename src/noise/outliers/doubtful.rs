@@ -8,10 +8,11 @@
 
 use rayon::prelude::*;
 
-use super::floating::{median, roughness, sparser, Groups, RANK, REACH, SHEET};
+use super::floating::{median, roughness, sparser, RANK, REACH, SHEET};
 use super::{Cloud, Stray};
+use crate::geom::Sets;
 
-/// Times that the rougher half of a group is taken out at most. Three or four are usual.
+/// Times that the rougher half of a group is taken out at most.
 const HALVINGS: usize = 10;
 
 /// What is known of the samples.
@@ -56,7 +57,7 @@ impl Doubtful<'_> {
         let beyond = |square: f64| square > self.limit * self.limit;
         // A sample may have fewer short edges than near others.
         let apart = || {
-            let near = self.cloud.around::<RANK>(s, &|_| true);
+            let near = self.cloud.around::<RANK>(s, |_| true);
             near.found().last().is_some_and(|n| beyond(n.0))
         };
         self.raw[s as usize] > self.limit && apart()
@@ -69,7 +70,7 @@ impl Doubtful<'_> {
         for (i, &s) in these.iter().enumerate() {
             place[s as usize] = i as u32;
         }
-        let mut groups = Groups::of(these.len() as u32);
+        let mut groups = Sets::new(these.len());
         for (i, &s) in these.iter().enumerate() {
             for &v in self.cloud.graph.at(s).iter().filter(|&&v| v > s) {
                 let reach = REACH * self.spacing[s as usize].min(self.spacing[v as usize]);
@@ -80,10 +81,10 @@ impl Doubtful<'_> {
             }
         }
         let known: Vec<f64> = (these.par_iter())
-            .map(|&s| roughness(self.cloud, s, &|v| strays[v as usize].is_none()))
+            .map(|&s| roughness(self.cloud, s, |v| strays[v as usize].is_none()))
             .collect();
         let mut members: Vec<(u32, u32)> = (0..these.len() as u32)
-            .map(|i| (groups.root(i), i))
+            .map(|i| (groups.find(i), i))
             .collect();
         members.sort_unstable();
         let halves = members.chunk_by(|a, b| a.0 == b.0).filter_map(|group| {

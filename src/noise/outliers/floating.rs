@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::doubtful::{chance_spacing, Doubtful};
 use super::{Cloud, Stray};
+use crate::geom::Sets;
 use crate::noise::plane::Plane;
 
 /// Edges longer than this many spacings, at either end, join nothing.
@@ -59,7 +60,7 @@ pub(super) fn floating(
     }
     drop(shortest);
 
-    let mut groups = Groups::of(count);
+    let mut groups = Sets::new(cloud.len());
     for s in 0..count {
         for &v in cloud.graph.at(s).iter().filter(|&&v| v > s) {
             let reach = REACH * spacing[s as usize].min(spacing[v as usize]);
@@ -69,8 +70,10 @@ pub(super) fn floating(
         }
     }
     let most = SMALL.max(cloud.len() / SURFACE);
-    let root: Vec<u32> = (0..count).map(|s| groups.root(s)).collect();
-    let surface = |s: u32| groups.size[root[s as usize] as usize] as usize > most;
+    let root = groups.flatten();
+    let mut size = vec![0usize; cloud.len()];
+    root.iter().for_each(|&r| size[r as usize] += 1);
+    let surface = |s: u32| size[root[s as usize] as usize] > most;
     let mut others: Vec<(u32, u32)> = (0..count)
         .filter(|&s| !surface(s))
         .map(|s| (root[s as usize], s))
@@ -96,9 +99,8 @@ pub(super) fn floating(
             strays[m as usize] = Some(Stray::Floating);
         }
     }
-    // Few tell no density.
     let strewn = found_before + strays.iter().flatten().count();
-    if strewn as f64 >= super::MANY * cloud.len() as f64 && room > 0.0 {
+    if strewn > 0 && room > 0.0 {
         let doubtful = Doubtful {
             cloud,
             raw: &raw,
@@ -176,7 +178,7 @@ fn sparse(
     let mut off: Vec<f64> = members
         .iter()
         .step_by(step)
-        .map(|&m| roughness(cloud, m, &|_| true))
+        .map(|&m| roughness(cloud, m, |_| true))
         .collect();
     median(&mut off) > SHEET
 }
@@ -200,7 +202,7 @@ pub(super) fn sparser(
 
 /// How far the twelve of `some` samples around one are off a plane, root mean square,
 /// over their spacing.
-pub(super) fn roughness(cloud: &Cloud, s: u32, some: &dyn Fn(u32) -> bool) -> f64 {
+pub(super) fn roughness(cloud: &Cloud, s: u32, some: impl Fn(u32) -> bool) -> f64 {
     let around = cloud.around::<12>(s, some);
     let around = around.found();
     let Some(far) = around.last() else {
@@ -218,38 +220,5 @@ pub(super) fn median(values: &mut [f64]) -> f64 {
     match values.is_empty() {
         true => 0.0,
         false => *values.select_nth_unstable_by(at, f64::total_cmp).1,
-    }
-}
-
-/// Disjoint sets of samples; the root of one is its smallest member.
-pub(super) struct Groups {
-    parent: Vec<u32>,
-    size: Vec<u32>,
-}
-
-impl Groups {
-    pub(super) fn of(count: u32) -> Groups {
-        Groups {
-            parent: (0..count).collect(),
-            size: vec![1; count as usize],
-        }
-    }
-
-    pub(super) fn root(&mut self, mut s: u32) -> u32 {
-        while self.parent[s as usize] != s {
-            let up = self.parent[self.parent[s as usize] as usize];
-            self.parent[s as usize] = up;
-            s = up;
-        }
-        s
-    }
-
-    pub(super) fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        if a != b {
-            let (low, high) = (a.min(b), a.max(b));
-            self.parent[high as usize] = low;
-            self.size[low as usize] += self.size[high as usize];
-        }
     }
 }

@@ -124,7 +124,7 @@ impl Cloud<'_> {
 
     /// Of `some` of the samples those near one, itself left out: of those two edges
     /// away the nearest.
-    fn around<const MOST: usize>(&self, s: u32, some: &dyn Fn(u32) -> bool) -> Nearest<MOST> {
+    fn around<const MOST: usize>(&self, s: u32, some: impl Fn(u32) -> bool) -> Nearest<MOST> {
         const EACH: usize = 8;
         let shortest = |s: u32| {
             let edges = self.graph.at(s).iter().filter(|&&v| some(v));
