@@ -84,6 +84,11 @@ impl Fit {
         (z - surface) * self.size
     }
 
+    /// Where a sample, given relative to the origin, is in the plane under the surface.
+    pub fn under(&self, offset: Point) -> Point {
+        [dot(self.axes[0], offset), dot(self.axes[1], offset), 0.0]
+    }
+
     /// The standard deviation of what the fit misses, for the weights it was
     /// made with.
     pub fn deviation(&self, weights: &[f64]) -> f64 {

@@ -9,13 +9,10 @@
 //! twelve samples form a lump rather than a sheet, and `m` grows at first: the bound on the
 //! ratio rises with the level, and `m(48) / m(24)` must be smaller.
 //!
-//! Little noise on a detailed shape grows too. But what noise leaves at a sample says
-//! nothing about what it leaves at the next, where shape leaves much the same: half the mean
-//! square of the differences between nearest neighbours is the variance of
-//! noise alone (von Neumann, 1941; Rice, 1984), and of shape a part that rises with the square of the
-//! distance between them. So a cloud is noisy as well where that, over the mean square of
-//! what quadrics through 24 samples miss, is large for the distance. (For noise near the spacing it is
-//! no help: of samples in a lump those are nearest that noise moved alike.)
+//! Little noise on a detailed shape grows too. So a cloud is noisy as well where nearest
+//! neighbours differ (`differences.rs`) by much of what quadrics through 24 samples miss, for the
+//! distance between them. (For noise near the spacing it is no help: of samples in a lump
+//! those are nearest that noise moved alike.)
 //!
 //! A wall as thin as the spacing looks the same by these measures: its two sheets
 //! are missed alike by all quadrics. But then what is missed has two values,
@@ -24,9 +21,10 @@
 
 use rayon::prelude::*;
 
+use super::differences::differences;
 use super::fit::Fit;
 use super::sheets::Sheets;
-use crate::geom::vec3::{dist_sq, sub};
+use crate::geom::vec3::sub;
 use crate::geom::Point;
 
 /// Samples looked at.
@@ -160,24 +158,9 @@ fn kurtosis(heights: &[f64]) -> f64 {
 /// heights, and over the mean square of the distances between those neighbours in units of the
 /// squared reach by the number.
 fn independence(offsets: &[Point], heights: &[f64], reach: f64) -> f64 {
-    let mut nearest = vec![(f64::INFINITY, 0); offsets.len()];
-    for (s, &from) in offsets.iter().enumerate() {
-        for (t, &to) in offsets.iter().enumerate().skip(s + 1) {
-            let way = dist_sq(from, to);
-            for (one, other) in [(s, t), (t, s)] {
-                if way < nearest[one].0 {
-                    nearest[one] = (way, other);
-                }
-            }
-        }
-    }
-    let (mut differences, mut squares, mut ways) = (0.0, 0.0, 0.0);
-    for (s, &(way, t)) in nearest.iter().enumerate() {
-        differences += (heights[s] - heights[t]).powi(2);
-        squares += heights[s].powi(2);
-        ways += way;
-    }
-    differences / (2.0 * squares) * (reach * reach / ways)
+    let (half, way) = differences(offsets, heights);
+    let squares: f64 = heights.iter().map(|h| h * h).sum();
+    half / squares * (reach * reach / way)
 }
 
 #[cfg(test)]

@@ -5,14 +5,20 @@
 //! to 48 and 96. At edges they miss by more than the noise; so the noise
 //! at a sample is a low quantile over its neighbours, most of which are on
 //! one side of the edge.
+//!
+//! Where the shape is detailed all of them miss it by more. How much of that is noise is told by
+//! neighbours that differ (`differences.rs`): those nearest to each other along the
+//! surface, so that they are not those that noise moved alike.
 
 use rayon::prelude::*;
 
+use super::differences::differences;
 use super::fit::Fit;
 use super::level::{quantile, spacing, LEAST_SHARE};
 use super::sheets::Sheets;
 use crate::context::{Cancelled, Context, Stage};
 use crate::geom::vec3::sub;
+use crate::geom::Point;
 
 /// Neighbours fitted at first, and whose noise is compared.
 const FIRST: usize = 24;
@@ -56,7 +62,12 @@ pub(super) fn local(
                 values.clear();
                 let around = raw[s].around.iter().filter(|&&v| v != NONE);
                 values.extend(around.map(|&v| raw[v as usize].missed));
-                quantile(values, LOW) * UP
+                let low = quantile(values, LOW);
+                values.clear();
+                let around = raw[s].around.iter().filter(|&&v| v != NONE);
+                values.extend(around.map(|&v| raw[v as usize].alone));
+                let alone = values.iter().sum::<f64>() / values.len().max(1) as f64;
+                low * up(low / raw[s].spacing, alone)
             });
             let spacing = raw[s].spacing;
             Local {
@@ -86,8 +97,25 @@ fn level_off(found: &mut [Local]) {
     }
 }
 
-/// What makes the low quantile a median again where all is noise.
-const UP: f64 = 1.06;
+/// What makes the low quantile the deviation of the noise again.
+///
+/// With it what is found is 0.97 to 1.18 of a noise of 0.1 and 0.25 % of the diagonal on 10,000
+/// samples of 23 surfaces.
+fn up(share: f64, alone: f64) -> f64 {
+    /// Where noise is all, and neighbours tell so.
+    const SHEET: f64 = 1.29;
+    /// And in a lump, where there are no neighbours along the surface.
+    const LUMP: f64 = 1.06;
+    let lump = ((share - 0.25) / 0.35).clamp(0.0, 1.0);
+    (1.0 - lump) * SHEET * alone.clamp(0.0, 1.0).sqrt() + lump * LUMP
+}
+
+/// Of the variance that shape leaves, the part that is in the differences between
+/// neighbours a mean spacing apart: from 0.3 to 0.43 on noise-free surfaces.
+const OF_SHAPE: f64 = 0.35;
+
+/// On grids neighbours are so far from each other that differences would say nothing.
+const MOST_OF_SHAPE: f64 = 0.8;
 
 /// How many neighbours to fit where the noise is this share of the spacing.
 ///
@@ -108,6 +136,8 @@ const NONE: u32 = u32::MAX;
 struct Raw {
     /// What a quadric misses.
     missed: f64,
+    /// How much of its square is noise, as neighbours tell: a share, far from exact.
+    alone: f64,
     spacing: f64,
     /// The nearest samples, itself included.
     around: [u32; FIRST],
@@ -119,6 +149,7 @@ fn at_sample(sheets: &Sheets, s: usize) -> Raw {
     let mut found = sheets.nearest(s, FIRST);
     let mut raw = Raw {
         missed: 0.0,
+        alone: 1.0,
         spacing: 0.0,
         around: [NONE; FIRST],
     };
@@ -139,10 +170,25 @@ fn at_sample(sheets: &Sheets, s: usize) -> Raw {
         let fit = Fit::of(at, &offsets, &ones[..found.len()], reach);
         raw.missed = fit.map_or(0.0, |fit| fit.residual(found.len()));
         raw.spacing = spacing(reach, found.len());
+        raw.alone = match fit {
+            Some(fit) if raw.missed > 0.0 => alone(&fit, raw.missed, &offsets, reach),
+            _ => 1.0,
+        };
         // A sheet, or all there is.
         if raw.missed < 0.4 * raw.spacing || found.len() < count {
             break;
         }
     }
     raw
+}
+
+/// How much of the square of what a quadric misses is noise. Of noise all of it is in the
+/// differences, of shape a part.
+fn alone(fit: &Fit, missed: f64, offsets: &[Point], reach: f64) -> f64 {
+    let heights: Vec<f64> = offsets.iter().map(|&o| fit.height_of(o)).collect();
+    let places: Vec<Point> = offsets.iter().map(|&o| fit.under(o)).collect();
+    let (half, way) = differences(&places, &heights);
+    let of_shape = OF_SHAPE * way * offsets.len() as f64 / (reach * reach);
+    let of_shape = of_shape.min(MOST_OF_SHAPE);
+    (half / (missed * missed) - of_shape) / (1.0 - of_shape)
 }

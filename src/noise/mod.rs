@@ -26,6 +26,7 @@
 //! `docs/noise.md` has what was measured.
 
 mod corners;
+mod differences;
 mod fit;
 mod level;
 mod local;
