@@ -12,12 +12,14 @@
 //!    grows and neighbours agree, or is small, nothing is done: the result is
 //!    the same to the last bit as without this module.
 //! 2. **How much where?** (`local.rs`) The same, at every sample: a low
-//!    quantile over the neighbours, so that edges do not count as noise.
+//!    quantile over the neighbours, so that edges do not count as noise, of which neighbours
+//!    tell the part that shape does not enter (`differences.rs`).
 //! 3. **Projection** (`project.rs`) Every sample amid noise moves to the foot
 //!    of a quadric fitted to its neighbours by weighted least squares: one step of
 //!    the moving least squares of Levin (1998; Alexa and others, 2001). How many
 //!    neighbours, follows from noise over spacing; near edges and in thin parts the fit
-//!    grows from a small one and leaves out what lies off it. Where points come with normals,
+//!    grows from a small one and leaves out what lies off it, elsewhere wider ones are followed as far as noise
+//!    explains it. Where points come with normals,
 //!    neighbours across a thin wall are none (`sheets.rs`).
 //!
 //! Samples that lie on no surface at all are told apart before (`outliers/`),

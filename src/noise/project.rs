@@ -114,8 +114,10 @@ fn between(sheets: &Sheets, s: usize, noise: f64, all: &[Feet]) -> Point {
 fn crossed(count: usize) -> f64 {
     /// So many deviations.
     const SURE: f64 = 2.0;
+    /// The noise is not known better than this.
+    const LEAST: f64 = 1.2;
     let freedom = (count as f64 * 5.0 / 9.0 - 6.0).max(1.0);
-    1.0 + SURE / (2.0 * freedom).sqrt()
+    (1.0 + SURE / (2.0 * freedom).sqrt()).max(LEAST)
 }
 
 /// Then fits are made to so many samples, as a share of all in turn.
