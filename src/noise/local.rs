@@ -192,3 +192,38 @@ fn alone(fit: &Fit, missed: f64, offsets: &[Point], reach: f64) -> f64 {
     let of_shape = of_shape.min(MOST_OF_SHAPE);
     (half / (missed * missed) - of_shape) / (1.0 - of_shape)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::near::Near;
+    use super::*;
+
+    /// Waves eight spacings long, so high that quadrics miss them by half as much again as the noise.
+    #[test]
+    fn shape_does_not_count_as_noise() {
+        const NOISE: f64 = 0.12;
+        let mut state = 1u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005);
+            state = state.wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let wave = |v: f64| (v * std::f64::consts::TAU / 8.0).sin();
+        let places: Vec<Point> = (0..4000)
+            .map(|_| {
+                let (x, y) = (next() * 63.0, next() * 63.0);
+                // Nearly normal, of deviation 1.
+                let shaken = (0..12).map(|_| next()).sum::<f64>() - 6.0;
+                [x, y, 0.8 * wave(x) * wave(y) + NOISE * shaken]
+            })
+            .collect();
+        let near = Near::of(&places);
+        let sheets = Sheets::of(&near, &[]);
+        let found = local(&sheets, None, &Context::default()).unwrap_or_default();
+        let median = quantile(&mut found.iter().map(|l| l.noise).collect::<Vec<_>>(), 0.5);
+        assert!((median / NOISE - 1.0).abs() < 0.2, "{median}");
+        let mut missed: Vec<f64> = (0..4000).map(|s| at_sample(&sheets, s).missed).collect();
+        let missed = quantile(&mut missed, 0.5);
+        assert!(missed > 1.5 * NOISE, "{missed}");
+    }
+}
